@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that are missing; does nothing (and needs no network) when none is.
+# Usage: apps/install_packages.sh [tests]   (with `tests`: what the tests need too)
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build
+  libeigen3-dev libsuitesparse-dev libfmt-dev libcli11-dev nlohmann-json3-dev
+  libboost-dev libboost-iostreams-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
+  libmrpt-obs-dev libmrpt-maps-dev mrpt-common
+)
+if [[ "${1:-}" == tests ]]; then
+  packages+=(clang libclang-rt-14-dev clang-format libgtest-dev libgmock-dev libbenchmark-dev libceres-dev)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ "$status" == installed ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+echo "installing: ${missing[*]}"
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  command -v sudo >/dev/null || { echo "sudo is needed to install ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,1 @@
+#include "backend/pose_graph.h"

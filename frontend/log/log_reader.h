@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frontend/log/observation.h"
+
+namespace loopgrid {
+
+/// What a reader met so far.
+struct LogStatistics {
+  std::int64_t lines = 0;      ///< lines (CARMEN) or objects (rawlog) seen
+  std::int64_t scans = 0;      ///< observations given out
+  std::int64_t odometry = 0;   ///< odometry entries
+  std::int64_t ignored = 0;    ///< known to carry nothing for us: comments, SYNC, unknown tags
+  std::int64_t malformed = 0;  ///< skipped because something was wrong with them
+  std::vector<std::string> first_problems;  ///< `file:line: ...` of the first few malformed ones
+};
+
+struct LogReaderOptions {
+  bool strict = false;  ///< stop at the first malformed line with an Error instead of skipping it
+  int max_reported_problems = 5;  ///< how many problems `first_problems` keeps
+};
+
+/// A log, read one observation after the other in constant memory. File order is the order of
+/// acquisition; time stamps are passed on, never sorted by.
+class LogReader {
+ public:
+  virtual ~LogReader() = default;
+
+  /// The next observation, or false at the end of the log. Throws Error (kInput) if the file cannot
+  /// be read further, or in strict mode at the first malformed line.
+  virtual bool Next(Observation* observation) = 0;
+
+  virtual const LogStatistics& statistics() const = 0;
+
+  /// Share of the input consumed, 0..1, for progress bars; 0 where the size is unknown.
+  virtual double progress() const = 0;
+};
+
+/// Opens a log of any known kind: CARMEN text or MRPT rawlog, plain or gzipped, told apart by
+/// content. Throws Error (kInput) for a missing, unreadable or empty file, or a directory.
+std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptions& options = {});
+
+}  // namespace loopgrid

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "backend/pose_graph.h"
+#include "frontend/log/observation.h"
+#include "frontend/slam/closure_record.h"
+#include "frontend/slam/slam_options.h"
+
+namespace loopgrid {
+
+/// What the tracker made of one scan.
+struct TrackedScan {
+  SE2 T_map_robot;             ///< current best pose
+  Eigen::Matrix3d covariance;  ///< of the pose relative to the last node, order (x, y, theta)
+  bool matched = false;        ///< false: the match failed and odometry carried the pose
+  int node = -1;               ///< index of the node this scan became, -1 if none
+  bool optimized = false;      ///< the graph was optimised; poses of older scans have moved
+};
+
+/// Seconds spent in each stage.
+struct SlamTimes {
+  double tracking = 0.0;
+  double closing = 0.0;
+  double optimizing = 0.0;
+  double finishing = 0.0;
+};
+
+struct SlamStatistics {
+  std::int64_t scans = 0;
+  std::int64_t failed_matches = 0;  ///< scans carried by odometry alone
+  std::int64_t unusable_scans = 0;  ///< scans with too few returns to match
+  double error_before = 0.0;        ///< F of the final constraints at the odometry poses
+  double error_after = 0.0;         ///< F of the final constraints at the final poses
+  SlamTimes times;
+};
+
+/// Graph-based SLAM in one object: feed it odometry and scans, ask it for poses, graph and
+/// uncertainty. Deterministic; no global state; one thread may use an object at a time.
+class Slam {
+ public:
+  /// Throws Error (kUsage) if the options are not valid.
+  explicit Slam(const SlamOptions& options = {});
+  ~Slam();
+  Slam(Slam&&) noexcept;
+  Slam& operator=(Slam&&) noexcept;
+
+  /// Takes the next scan of the log, in order of acquisition.
+  TrackedScan AddScan(const Observation& observation);
+
+  /// Ends the run: links overlapping neighbours, optimises, refines. Call once, after the last
+  /// scan.
+  void Finish();
+
+  /// Nodes and constraints. Poses are T_map_robot.
+  const PoseGraph& graph() const;
+
+  /// Index of the scan that each node holds.
+  const std::vector<int>& node_scans() const;
+
+  int scan_count() const;
+  double scan_timestamp(int scan) const;
+  SE2 scan_odometry(int scan) const;  ///< T_odom_robot as in the log
+
+  /// Best T_map_robot of every scan given so far.
+  std::vector<SE2> ScanPoses() const;
+
+  /// The returns of a scan, in the robot frame, metres; and the directions without a return.
+  std::span<const Eigen::Vector2f> scan_hits(int scan) const;
+  std::span<const Eigen::Vector2f> scan_no_returns(int scan) const;  ///< unit vectors, robot frame
+  SE2 scan_laser(int scan) const;                                    ///< T_robot_laser
+
+  /// Every closure tried so far, in order.
+  const std::vector<ClosureRecord>& closures() const;
+
+  /// Covariance of every node relative to the last one: the diagonal blocks of the inverse of the
+  /// reduced Hessian, in each node's own frame, order (x, y, theta). The last one's is zero.
+  std::vector<Eigen::Matrix3d> NodeCovariances() const;
+
+  SlamStatistics statistics() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace loopgrid
