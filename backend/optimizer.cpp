@@ -1,0 +1,151 @@
+#include "backend/optimizer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "backend/base/error.h"
+
+namespace loopgrid {
+namespace {
+
+// Levenberg-Marquardt's lambda multiplies the Hessian's diagonal (Marquardt's scaling), so these
+// have no unit.
+constexpr double kFirstDamping = 1e-5;
+constexpr double kLargestDamping = 1e10;
+constexpr double kDampingFactor = 10.0;
+
+void RequireAtLeastZero(const char* field, double value) {
+  if (std::isfinite(value) && value >= 0.0) return;
+  throw Error(ErrorCode::kUsage, fmt::format("{} is {}, expected at least 0", field, value));
+}
+
+double Stronger(double damping) { return std::max(kFirstDamping, damping * kDampingFactor); }
+
+double Weaker(double damping) {
+  const double weaker = damping / kDampingFactor;
+  return weaker < kFirstDamping ? 0.0 : weaker;
+}
+
+}  // namespace
+
+void OptimizerOptions::Validate() const {
+  if (max_iterations < 0) {
+    throw Error(ErrorCode::kUsage,
+                fmt::format("max_iterations is {}, expected at least 0", max_iterations));
+  }
+  RequireAtLeastZero("relative_decrease", relative_decrease);
+  RequireAtLeastZero("absolute_decrease", absolute_decrease);
+  loss.Validate();
+}
+
+const char* ToString(Termination termination) {
+  switch (termination) {
+    case Termination::kConverged:
+      return "converged";
+    case Termination::kMaxIterations:
+      return "iterations used up";
+    case Termination::kStalled:
+      return "no step lowers the error";
+    case Termination::kIndefinite:
+      return "Hessian not positive definite";
+    case Termination::kNothingToMove:
+      return "nothing to move";
+  }
+  return "unknown";
+}
+
+Optimizer::Optimizer(const OptimizerOptions& options) : options_(options) { options_.Validate(); }
+
+OptimizerResult Optimizer::Optimize(PoseGraph* graph) {
+  Validate(*graph);
+  const bool pattern_changed = equations_.SetStructure(*graph, HeldNodes(*graph));
+  OptimizerResult result;
+  result.initial_error = equations_.Linearize(*graph, options_.loss);
+  result.final_error = result.initial_error;
+  if (equations_.variable_count() == 0) return result;
+  if (pattern_changed) solver_.Analyze(equations_.hessian());
+
+  while (true) {
+    if (result.iterations == options_.max_iterations) {
+      result.termination = Termination::kMaxIterations;
+      return result;
+    }
+    switch (TakeStep(graph, &result)) {
+      case Step::kNegligible:
+        result.termination = Termination::kConverged;
+        return result;
+      case Step::kNotFound:
+        result.termination = Termination::kStalled;
+        return result;
+      case Step::kIndefinite:
+        result.termination = Termination::kIndefinite;
+        return result;
+      case Step::kTaken:
+        ++result.iterations;
+        equations_.Linearize(*graph, options_.loss);
+    }
+  }
+}
+
+Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
+  const double negligible =
+      std::max(options_.absolute_decrease, options_.relative_decrease * result->final_error);
+  double& damping = result->damping;
+  bool was_definite = false;
+  bool was_rejected = false;
+  bool was_raised = false;
+  while (damping <= kLargestDamping) {
+    if (!solver_.Factorize(equations_.hessian(), damping)) {
+      damping = Stronger(damping);
+      was_raised = true;
+      continue;
+    }
+    was_definite = true;
+    const Eigen::VectorXd dx = solver_.Solve(-equations_.gradient());
+    if (PromisedDecrease(dx, damping) <= negligible) {
+      if (was_rejected) return Step::kNotFound;
+      if (was_raised || damping == 0.0) return Step::kNegligible;
+      // Strong damping alone makes steps small: that is no sign of a minimum.
+      damping = Weaker(damping);
+      continue;
+    }
+    if (TryStep(graph, dx, &result->final_error)) {
+      damping = Weaker(damping);
+      return Step::kTaken;
+    }
+    damping = Stronger(damping);
+    was_rejected = was_raised = true;
+  }
+  return was_definite ? Step::kNotFound : Step::kIndefinite;
+}
+
+// With (H + lambda D) dx = -b the quadratic model falls by -(2 b^T dx + dx^T H dx).
+double Optimizer::PromisedDecrease(const Eigen::VectorXd& dx, double damping) const {
+  double promised = -equations_.gradient().dot(dx);
+  if (damping == 0.0) return promised;
+  const SymmetricBlockMatrix<3>& H = equations_.hessian();
+  for (int i = 0; i < H.cols(); ++i) {
+    promised += damping * dx.segment<3>(3 * i).cwiseAbs2().dot(H.diagonal(i).diagonal());
+  }
+  return promised;
+}
+
+bool Optimizer::TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error) {
+  poses_before_ = graph->poses;
+  for (std::size_t node = 0; node < graph->poses.size(); ++node) {
+    const int variable = equations_.variable(static_cast<int>(node));
+    if (variable < 0) continue;
+    graph->poses[node] = poses_before_[node].Boxplus(dx.segment<3>(3 * variable));
+  }
+  const double new_error = NormalEquations::Error(*graph, options_.loss);
+  if (new_error < *error) {
+    *error = new_error;
+    return true;
+  }
+  graph->poses.swap(poses_before_);
+  return false;
+}
+
+}  // namespace loopgrid
