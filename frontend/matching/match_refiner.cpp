@@ -1,6 +1,7 @@
 #include "frontend/matching/match_refiner.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +13,7 @@ struct NormalEquations {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double weighted_square = 0.0;
   double weight = 0.0;
+  double weighted_lever = 0.0;  // squared distance of the hits from the robot
   int used = 0;
   int inliers = 0;
   int candidates = 0;
@@ -42,9 +44,33 @@ NormalEquations Linearize(const LocalMap& map, const PointScan& scan, const SE2&
     equations.b += w * r * J;
     equations.weighted_square += w * r * r;
     equations.weight += w;
+    equations.weighted_lever += w * static_cast<double>(q.squaredNorm());
     if (std::abs(ratio) < 1.0) ++equations.inliers;
   }
   return equations;
+}
+
+// Normals are measured too. In a bare corridor their errors look like knowledge along it: each hit
+// adds about sin^2(error) where it should add nothing. Directions that know no more than this are
+// taken out of the equations, others lose as much as they owe to it.
+void DiscountNormalErrors(double normal_sigma, NormalEquations* equations) {
+  if (equations->weight <= 0.0) return;
+  const double lever = std::sqrt(std::max(equations->weighted_lever / equations->weight, 1e-6));
+  const Eigen::Vector3d scale(1.0, 1.0, 1.0 / lever);
+  const Eigen::Matrix3d scaled = scale.asDiagonal() * equations->H * scale.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(scaled);
+  const double spurious = normal_sigma * normal_sigma * equations->weight;
+  Eigen::Vector3d share;
+  for (int k = 0; k < 3; ++k) {
+    share(k) = std::max(1.0 - spurious / std::max(solver.eigenvalues()(k), 1e-12), 0.0);
+  }
+  const Eigen::Matrix3d keep =
+      solver.eigenvectors() * share.asDiagonal() * solver.eigenvectors().transpose();
+  const Eigen::Vector3d unscale = scale.cwiseInverse();
+  const Eigen::Matrix3d H = unscale.asDiagonal() * (keep * scaled) * unscale.asDiagonal();
+  equations->H = 0.5 * (H + H.transpose());
+  equations->b = unscale.cwiseProduct(keep * scale.cwiseProduct(equations->b));
 }
 
 }  // namespace
@@ -55,7 +81,8 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
   SE2 pose = T_map_robot;
   double scale = options.first_scale;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const NormalEquations equations = Linearize(map, scan, pose, scale);
+    NormalEquations equations = Linearize(map, scan, pose, scale);
+    DiscountNormalErrors(options.normal_sigma, &equations);
     Eigen::Matrix3d H = to_information * equations.H + prior.information;
     // A direction that nothing speaks of stays where it is.
     H.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-3);
@@ -67,7 +94,8 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
     if (settled && scale <= options.last_scale) break;
     scale = std::max(0.6 * scale, options.last_scale);
   }
-  const NormalEquations equations = Linearize(map, scan, pose, options.last_scale);
+  NormalEquations equations = Linearize(map, scan, pose, options.last_scale);
+  DiscountNormalErrors(options.normal_sigma, &equations);
   RefinedMatch match;
   match.T_map_robot = pose;
   match.information = to_information * equations.H;

@@ -13,6 +13,7 @@ struct RefinerOptions {
   double first_scale = 0.15;  ///< distance at which a residual starts to lose its say, metres ...
   double last_scale = 0.05;   ///< ... at the end
   double range_sigma = 0.03;  ///< standard deviation of one hit across the surface, metres
+  double normal_sigma = 0.1;  ///< standard deviation of a normal's direction, radians
 };
 
 /// A pose that the odometry suggests, and how sure it is.

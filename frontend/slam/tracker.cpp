@@ -78,7 +78,7 @@ TrackedPose Tracker::Track(const PointScan& scan, const SE2& motion) {
   if (!found.found || found.score < options_.min_score) return result;
 
   const RefinedMatch match =
-      RefineMatch(map_, scan, found.T_map_robot, {predicted, covariance.inverse()});
+      RefineMatch(map_, scan, found.T_map_robot, {predicted, covariance.inverse()}, options_.refiner);
   if (match.inlier_share < options_.min_inlier_share) return result;
   result.T_map_robot = T_map_robot_ = match.T_map_robot;
   result.information = match.information;

@@ -13,6 +13,7 @@ namespace loopgrid {
 
 struct TrackerOptions {
   OdometryNoise odometry;
+  RefinerOptions refiner;
   double table_resolution = 0.05;  ///< metres
   double table_sigma = 0.07;       ///< metres
   double map_radius = 30.0;        ///< surfaces farther from the robot are left out, metres
