@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build
   libeigen3-dev libsuitesparse-dev libfmt-dev libcli11-dev nlohmann-json3-dev
-  libboost-dev libboost-iostreams-dev
+  libboost-dev zlib1g-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libmrpt-obs-dev libmrpt-maps-dev mrpt-common
 )

@@ -11,11 +11,12 @@ namespace loopgrid {
 
 /// What a reader met so far.
 struct LogStatistics {
-  std::int64_t lines = 0;      ///< lines (CARMEN) or objects (rawlog) seen
-  std::int64_t scans = 0;      ///< observations given out
-  std::int64_t odometry = 0;   ///< odometry entries
-  std::int64_t ignored = 0;    ///< known to carry nothing for us: comments, SYNC, unknown tags
-  std::int64_t malformed = 0;  ///< skipped because something was wrong with them
+  std::int64_t lines = 0;       ///< lines (CARMEN) or objects (rawlog) seen
+  std::int64_t scans = 0;       ///< observations given out
+  std::int64_t odometry = 0;    ///< odometry entries
+  std::int64_t parameters = 0;  ///< PARAM lines about a laser
+  std::int64_t ignored = 0;     ///< known to carry nothing for us: comments, SYNC, unknown tags
+  std::int64_t malformed = 0;   ///< skipped because something was wrong with them
   std::vector<std::string> first_problems;  ///< `file:line: ...` of the first few malformed ones
 };
 
@@ -39,6 +40,11 @@ class LogReader {
   /// Share of the input consumed, 0..1, for progress bars; 0 where the size is unknown.
   virtual double progress() const = 0;
 };
+
+/// For readers: counts a malformed entry and keeps its description, or throws it as an Error
+/// (kInput) in strict mode.
+void CountMalformed(const std::string& problem, const LogReaderOptions& options,
+                    LogStatistics* statistics);
 
 /// Opens a log of any known kind: CARMEN text or MRPT rawlog, plain or gzipped, told apart by
 /// content. Throws Error (kInput) for a missing, unreadable or empty file, or a directory.

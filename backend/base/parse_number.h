@@ -1,0 +1,72 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+namespace loopgrid {
+
+/// Reads the whole of `text` as a number, whatever the locale. False, and `value` untouched, for
+/// anything else: an empty text, trailing characters, NaN, an infinity, a number out of range.
+template <typename Number>
+bool ParseNumber(std::string_view text, Number* value) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Number parsed{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, parsed);
+  if (error != std::errc() || stop != end) return false;
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (!std::isfinite(parsed)) return false;
+  }
+  *value = parsed;
+  return true;
+}
+
+/// Walks over the fields of a line, which spaces and tabs separate.
+class FieldCursor {
+ public:
+  explicit FieldCursor(std::string_view line)
+      : begin_(line.data()), position_(begin_), end_(begin_ + line.size()) {}
+
+  /// The next field, empty at the end of the line.
+  std::string_view Next() {
+    SkipBlanks();
+    const char* start = position_;
+    while (position_ != end_ && !IsBlank(*position_)) ++position_;
+    return {start, static_cast<std::size_t>(position_ - start)};
+  }
+
+  /// The next field as a number (see ParseNumber).
+  template <typename Number>
+  bool Next(Number* value) {
+    return ParseNumber(Next(), value);
+  }
+
+  /// The next field as a decimal number; as Next(float*), but fast for the short ones of logs.
+  bool NextDecimal(float* value);
+
+  /// Whether nothing but blanks is left.
+  bool AtEnd() {
+    SkipBlanks();
+    return position_ == end_;
+  }
+
+  /// How many bytes of the line are behind us.
+  std::size_t offset() const { return static_cast<std::size_t>(position_ - begin_); }
+
+  void SkipBlanks() {
+    while (position_ != end_ && IsBlank(*position_)) ++position_;
+  }
+
+ private:
+  static bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+  const char* begin_;
+  const char* position_;
+  const char* end_;
+};
+
+}  // namespace loopgrid

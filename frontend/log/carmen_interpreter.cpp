@@ -1,0 +1,41 @@
+#include "frontend/log/carmen_interpreter.h"
+
+namespace loopgrid {
+
+CarmenMeaning CarmenInterpreter::Read(std::string_view line, bool terminated) {
+  if (!terminated) line = line.substr(0, line.find_last_of(" \t") + 1);
+  const CarmenTag tag = TagOf(line);
+  if (IsLaser(tag)) return ReadLaser(line);
+  if (tag == CarmenTag::kOdom) return ReadOdometry(line);
+  if (tag != CarmenTag::kParam) return CarmenMeaning::kNothing;
+  bool known = false;
+  problem_ = parameters_.Apply(line, &known);
+  if (!problem_.empty()) return CarmenMeaning::kMalformed;
+  return known ? CarmenMeaning::kParameter : CarmenMeaning::kNothing;
+}
+
+CarmenMeaning CarmenInterpreter::ReadLaser(std::string_view line) {
+  problem_ = ParseLaserLine(line, &message_);
+  if (!problem_.empty()) return CarmenMeaning::kMalformed;
+  if (message_.tag > used_) return CarmenMeaning::kOtherLaser;
+  used_ = message_.tag;
+  if (message_.has_poses) {
+    T_odom_robot_ = message_.T_odom_robot;
+  } else {
+    T_odom_robot_ = latest_odometry_;
+    if (!had_odometry_) started_at_origin_ = true;
+  }
+  return CarmenMeaning::kScan;
+}
+
+CarmenMeaning CarmenInterpreter::ReadOdometry(std::string_view line) {
+  SE2 T_odom_robot;
+  problem_ = ParseOdometryLine(line, &T_odom_robot);
+  if (!problem_.empty()) return CarmenMeaning::kMalformed;
+  if (!had_odometry_ && started_at_origin_) T_origin_odom_ = T_odom_robot.Inverse();
+  had_odometry_ = true;
+  latest_odometry_ = started_at_origin_ ? T_origin_odom_ * T_odom_robot : T_odom_robot;
+  return CarmenMeaning::kOdometry;
+}
+
+}  // namespace loopgrid
