@@ -1,0 +1,84 @@
+#include "mapping/map_files.h"
+
+#include <fmt/format.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "backend/base/error.h"
+
+namespace loopgrid {
+namespace {
+
+constexpr std::int64_t kMaxSide = 32767;
+
+std::uint8_t GreyOf(CellState state) {
+  switch (state) {
+    case CellState::kWall:
+      return kGreyWall;
+    case CellState::kFree:
+      return kGreyFree;
+    case CellState::kUnknown:
+      break;
+  }
+  return kGreyUnknown;
+}
+
+// What the image shows: one unknown cell at the origin if there is nothing to show.
+CellBox ImageBox(const OccupancyGrid& grid) {
+  const CellBox seen = grid.SeenBox();
+  return seen.empty() ? CellBox{0, 0, 1, 1} : seen;
+}
+
+std::vector<std::uint8_t> Encode(const GreyImage& image, const char* extension,
+                                 const std::vector<int>& parameters) {
+  // OpenCV takes a pointer to non-const but does not write.
+  const cv::Mat view(image.height, image.width, CV_8UC1,
+                     const_cast<std::uint8_t*>(image.pixels.data()));
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(extension, view, bytes, parameters);
+  return bytes;
+}
+
+}  // namespace
+
+GreyImage DrawMap(const OccupancyGrid& grid) {
+  const CellBox box = ImageBox(grid);
+  if (box.width() > kMaxSide || box.height() > kMaxSide) {
+    throw Error(ErrorCode::kUsage,
+                fmt::format("a map image of {} x {} pixels is more than {} a side; take a coarser "
+                            "resolution",
+                            box.width(), box.height(), kMaxSide));
+  }
+  GreyImage image{.width = static_cast<int>(box.width()),
+                  .height = static_cast<int>(box.height()),
+                  .pixels = {}};
+  image.pixels.reserve(static_cast<std::size_t>(box.width() * box.height()));
+  for (std::int64_t y = box.max_y - 1; y >= box.min_y; --y) {
+    for (std::int64_t x = box.min_x; x < box.max_x; ++x) {
+      image.pixels.push_back(GreyOf(grid.State(x, y)));
+    }
+  }
+  return image;
+}
+
+std::vector<std::uint8_t> EncodePng(const GreyImage& image) {
+  return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 6});
+}
+
+std::vector<std::uint8_t> EncodePgm(const GreyImage& image) { return Encode(image, ".pgm", {}); }
+
+std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
+  const CellBox box = ImageBox(grid);
+  return fmt::format(
+      "image: {}\n"
+      "resolution: {}\n"
+      "origin: [{:.6f}, {:.6f}, 0.0]\n"
+      "negate: 0\n"
+      "occupied_thresh: 0.65\n"
+      "free_thresh: 0.196\n",
+      image_name, grid.resolution(), static_cast<double>(box.min_x) * grid.resolution(),
+      static_cast<double>(box.min_y) * grid.resolution());
+}
+
+}  // namespace loopgrid

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mapping/occupancy_grid.h"
+
+namespace loopgrid {
+
+/// Grey values of maps. By map_server's trinary rule, p = (255 - value) / 255 against the
+/// thresholds of MapYaml, they say wall (p > 0.65), free (p < 0.196) and unknown (between).
+inline constexpr std::uint8_t kGreyWall = 0;
+inline constexpr std::uint8_t kGreyUnknown = 205;
+inline constexpr std::uint8_t kGreyFree = 254;
+
+/// A grey picture: row-major, the first row is the top.
+struct GreyImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// The grid cropped to what was seen; one pixel a cell, y upwards. A grid that has seen nothing
+/// gives one unknown pixel. Throws Error (kUsage) above 32,767 pixels a side (more than image files
+/// of every program take).
+GreyImage DrawMap(const OccupancyGrid& grid);
+
+/// The bytes of map.png and map.pgm: 8 bits, grey. The same image gives the same bytes.
+std::vector<std::uint8_t> EncodePng(const GreyImage& image);
+std::vector<std::uint8_t> EncodePgm(const GreyImage& image);
+
+/// The text of map.yaml in the convention of ROS's map_server: `origin` is the lower left corner of
+/// the image in the map frame (metres, metres, radians).
+std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name);
+
+}  // namespace loopgrid
