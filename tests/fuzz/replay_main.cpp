@@ -1,0 +1,35 @@
+// Stands in for libFuzzer in normal test builds: feeds the target every file of the folders given,
+// whole and cut off at every byte.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+int main(int argc, char** argv) {
+  std::vector<std::filesystem::path> seeds;
+  for (int i = 1; i < argc; ++i) {
+    for (const auto& entry : std::filesystem::directory_iterator(argv[i])) {
+      seeds.push_back(entry.path());
+    }
+  }
+  std::sort(seeds.begin(), seeds.end());
+  for (const auto& seed : seeds) {
+    std::printf("%s\n", seed.c_str());
+    std::fflush(stdout);  // the last line names the culprit of a crash
+    std::ifstream stream(seed, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    for (std::size_t size = 0; size <= bytes.size(); ++size) {
+      const std::vector<std::uint8_t> input(bytes.begin(),
+                                            bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      LLVMFuzzerTestOneInput(input.data(), input.size());
+    }
+  }
+  return seeds.empty() ? 1 : 0;
+}
