@@ -5,7 +5,7 @@
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
-find_package(Boost 1.74 REQUIRED COMPONENTS iostreams)
+find_package(ZLIB REQUIRED)
 find_package(mrpt-obs REQUIRED)
 
 if(NOT TARGET loopgrid_deps::cholmod)

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "apps/eval_command.h"
+#include "apps/run_options.h"
+
+namespace loopgrid {
+
+/// Text to print and be done with: the answer to --help and --version.
+struct Answer {
+  std::string text;
+};
+
+using Command = std::variant<RunOptions, EvalOptions, Answer>;
+
+/// What the arguments ask for. Throws Error (kUsage) if they make no sense.
+Command ParseCommandLine(int argc, const char* const* argv);
+
+}  // namespace loopgrid

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace loopgrid {
+
+/// The folder that a run leaves its files in: all of them or none. Files are written to a hidden
+/// folder inside it and move to their places together, in Commit(). Without Commit() nothing stays
+/// behind, not even the folder itself if it was not there before.
+class OutputDirectory {
+ public:
+  /// For the files `names` in `directory`. Touches nothing yet.
+  OutputDirectory(const std::string& directory, std::vector<std::string> names);
+  ~OutputDirectory();
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+  /// Makes the folder (and its parents) where missing, and finds out whether the files can be made
+  /// in it. Throws Error (kOutput) if not.
+  void Prepare();
+
+  /// Where to write the file `name` for now.
+  std::string StagingPath(const std::string& name) const { return (staging_ / name).string(); }
+
+  /// Moves every file to its place. Throws Error (kOutput) if one is missing or cannot
+  /// be moved.
+  void Commit();
+
+  /// Removes what is not committed. Any thread may call it, also during Prepare() or Commit(),
+  /// which then come first. Nothing can be written afterwards.
+  void Discard() noexcept;
+
+ private:
+  void CreateDirectories();
+  void CheckPlaces() const;
+
+  std::filesystem::path directory_;
+  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> created_;  // folders that were not there, outermost first
+  std::vector<std::string> names_;
+  std::mutex mutex_;
+  bool done_ = false;
+};
+
+}  // namespace loopgrid

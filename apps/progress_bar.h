@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace loopgrid {
+
+/// One line of progress: bar, per cent, scans, rate and time left, at most `width` characters.
+/// `fraction` is the share of the log that is read, 0..1; 0 if nobody knows, then without the bar.
+std::string FormatProgress(double fraction, std::int64_t scans, double seconds, int width);
+
+/// A progress bar on standard error, for people: silent if that is not a terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool quiet);
+  ~ProgressBar() { Clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// Redraws the bar, but not more than ten times a second.
+  void Update(double fraction, std::int64_t scans);
+
+  /// Shows what the program is busy with after the last scan.
+  void ShowStage(const std::string& stage);
+
+  void Clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void Draw(const std::string& line);
+
+  bool enabled_;
+  bool drawn_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_ = start_;
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "frontend/slam/slam_options.h"
+
+namespace loopgrid {
+
+/// What `loopgrid run` is asked to do.
+struct RunOptions {
+  std::string log;           ///< the log to read
+  std::string out;           ///< the folder to leave the files in
+  double resolution = 0.05;  ///< side of a map cell, metres
+  bool strict = false;       ///< stop at the first malformed line
+  bool quiet = false;        ///< no progress bar
+  SlamOptions slam;
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
+}  // namespace loopgrid
