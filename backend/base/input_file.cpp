@@ -15,7 +15,7 @@
 namespace loopgrid {
 namespace {
 
-constexpr unsigned kBufferSize = 1U << 17;
+constexpr unsigned kBufferSize = 1U << 16;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& reason) {
   throw Error(ErrorCode::kInput, path + ": " + reason);

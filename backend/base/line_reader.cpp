@@ -6,7 +6,7 @@
 namespace loopgrid {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 17;
+constexpr std::size_t kChunk = std::size_t{1} << 16;
 
 }  // namespace
 
@@ -14,15 +14,15 @@ LineReader::LineReader(InputFile file, std::size_t max_line_length)
     : file_(std::move(file)),
       max_line_length_(max_line_length),
       // A longest line with its CR and LF, and room to read on.
-      buffer_(max_line_length + 2 + kChunk) {}
+      buffer_(std::make_unique_for_overwrite<char[]>(max_line_length + 2 + kChunk)) {}
 
 bool LineReader::Refill() {
   if (begin_ > 0) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
   }
-  const std::size_t count = file_.Read(buffer_.data() + end_, kChunk);
+  const std::size_t count = file_.Read(buffer_.get() + end_, kChunk);
   end_ += count;
   return count > 0;
 }
@@ -43,7 +43,7 @@ bool LineReader::Next(std::string_view* line) {
   terminated_ = newline != nullptr;
   if (!terminated_ && begin_ == end_ && !too_long_) return false;
   ++line_number_;
-  const char* begin = buffer_.data() + begin_;
+  const char* begin = buffer_.get() + begin_;
   const std::size_t length =
       terminated_ ? static_cast<std::size_t>(newline - begin) : end_ - begin_;
   begin_ += length + (terminated_ ? 1 : 0);
@@ -56,7 +56,7 @@ bool LineReader::Next(std::string_view* line) {
 }
 
 const char* LineReader::FindLineEnd(std::size_t searched) const {
-  const char* from = buffer_.data() + begin_ + searched;
+  const char* from = buffer_.get() + begin_ + searched;
   return static_cast<const char*>(std::memchr(from, '\n', end_ - begin_ - searched));
 }
 

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "backend/base/error.h"
 #include "backend/base/input_file.h"
@@ -49,7 +49,7 @@ class LineReader {
 
   InputFile file_;
   std::size_t max_line_length_;
-  std::vector<char> buffer_;
+  std::unique_ptr<char[]> buffer_;
   std::size_t begin_ = 0;  // of what is read but not yet given out
   std::size_t end_ = 0;
   std::int64_t line_number_ = 0;
