@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that are missing; does nothing (and needs no network) when none is.
+# Installs the Debian 12 packages that are missing; does nothing (and needs no network) if none is.
 # Usage: apps/install_packages.sh [tests]   (with `tests`: what the tests need too)
 set -euo pipefail
 
@@ -11,7 +11,15 @@ packages=(
   libmrpt-obs-dev libmrpt-maps-dev mrpt-common
 )
 if [[ "${1:-}" == tests ]]; then
-  packages+=(clang libclang-rt-14-dev clang-format libgtest-dev libgmock-dev libbenchmark-dev libceres-dev)
+  packages+=(
+    clang libclang-rt-14-dev clang-format
+    libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
+  )
+fi
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "this is not Debian: install what stands for these packages: ${packages[*]}" >&2
+  exit 1
 fi
 
 missing=()
@@ -21,12 +29,17 @@ for package in "${packages[@]}"; do
 done
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
-echo "installing: ${missing[*]}"
 as_root=()
 if [[ $(id -u) -ne 0 ]]; then
-  command -v sudo >/dev/null || { echo "sudo is needed to install ${missing[*]}" >&2; exit 1; }
+  if ! command -v sudo >/dev/null; then
+    echo "these packages are missing, and to install them takes root or sudo: ${missing[*]}" >&2
+    exit 1
+  fi
   as_root=(sudo)
 fi
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-  apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+
+echo "installing: ${missing[*]}"
+# Lists that cannot be refreshed just now may still do.
+"${as_root[@]}" apt-get update -qq || true
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+  -o DPkg::Lock::Timeout=300 --no-install-recommends "${missing[@]}" >/dev/null

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -60,6 +61,22 @@ void OutputDirectory::CheckPlaces() const {
       Fail(directory_ / name, "is a directory, and a file of this name is to be written");
     }
   }
+}
+
+void OutputDirectory::Write(const std::string& name,
+                            const std::function<void(const std::string& path)>& write) {
+  const std::string path = (staging_ / name).string();
+  try {
+    write(path);
+  } catch (const Error& error) {
+    const std::string_view message = error.what();
+    if (!message.starts_with(path)) throw;
+    throw Error(error.code(), (directory_ / name).string().append(message.substr(path.size())));
+  }
+}
+
+void OutputDirectory::Write(const std::string& name, std::string_view content) {
+  Write(name, [content](const std::string& path) { WriteFileAtomically(path, content); });
 }
 
 void OutputDirectory::Commit() {

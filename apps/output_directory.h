@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace loopgrid {
@@ -22,8 +24,11 @@ class OutputDirectory {
   /// in it. Throws Error (kOutput) if not.
   void Prepare();
 
-  /// Where to write the file `name` for now.
-  std::string StagingPath(const std::string& name) const { return (staging_ / name).string(); }
+  /// Calls `write` with the path to write the file `name` to for now. Errors name its final place.
+  void Write(const std::string& name, const std::function<void(const std::string& path)>& write);
+
+  /// The same for a file that is ready in memory.
+  void Write(const std::string& name, std::string_view content);
 
   /// Moves every file to its place. Throws Error (kOutput) if one is missing or cannot
   /// be moved.

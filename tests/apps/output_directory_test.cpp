@@ -23,7 +23,7 @@ class OutputDirectoryTest : public testing::Test {
   }
   ~OutputDirectoryTest() override { fs::remove_all(root_); }
 
-  static void Write(const std::string& path, const std::string& text) {
+  static void WriteText(const std::string& path, const std::string& text) {
     std::ofstream(path) << text;
   }
 
@@ -58,8 +58,8 @@ TEST_F(OutputDirectoryTest, FilesAppearOnlyWithCommitAndNothingElseStays) {
   {
     OutputDirectory outputs(out, {"a", "b"});
     outputs.Prepare();
-    Write(outputs.StagingPath("a"), "first");
-    Write(outputs.StagingPath("b"), "second");
+    outputs.Write("a", "first");
+    outputs.Write("b", "second");
     EXPECT_FALSE(fs::exists(out / "a"));
     outputs.Commit();
   }
@@ -70,30 +70,30 @@ TEST_F(OutputDirectoryTest, FilesAppearOnlyWithCommitAndNothingElseStays) {
 
 TEST_F(OutputDirectoryTest, WithoutCommitNothingStaysNotEvenTheFolder) {
   {
-    OutputDirectory outputs(root_ / "new" / "out", {"a"});
+    OutputDirectory outputs(root_ / "new" / "out", {"a", "b"});
     outputs.Prepare();
-    Write(outputs.StagingPath("a"), "lost");
-    Write(outputs.StagingPath("a") + ".partial", "lost too");
+    outputs.Write("a", "lost");
+    outputs.Write("b", [](const std::string& path) { WriteText(path + ".partial", "lost too"); });
   }
   EXPECT_EQ(Everything(), std::set<std::string>{});
 }
 
 TEST_F(OutputDirectoryTest, FolderThatWasThereStaysWithWhatItHad) {
-  Write(root_ / "a", "old");
+  WriteText(root_ / "a", "old");
   {
     OutputDirectory outputs(root_, {"a"});
     outputs.Prepare();
-    Write(outputs.StagingPath("a"), "new");
+    outputs.Write("a", "new");
   }
   EXPECT_EQ(Everything(), std::set<std::string>{"a"});
   EXPECT_EQ(Read(root_ / "a"), "old");
 }
 
 TEST_F(OutputDirectoryTest, CommitReplacesAnEarlierRun) {
-  Write(root_ / "a", "old");
+  WriteText(root_ / "a", "old");
   OutputDirectory outputs(root_, {"a"});
   outputs.Prepare();
-  Write(outputs.StagingPath("a"), "new");
+  outputs.Write("a", "new");
   outputs.Commit();
   EXPECT_EQ(Read(root_ / "a"), "new");
 }
@@ -102,14 +102,27 @@ TEST_F(OutputDirectoryTest, FileThatIsMissingStopsAllOthers) {
   {
     OutputDirectory outputs(root_, {"a", "b"});
     outputs.Prepare();
-    Write(outputs.StagingPath("a"), "first");
+    outputs.Write("a", "first");
     EXPECT_THROW(outputs.Commit(), Error);
   }
   EXPECT_EQ(Everything(), std::set<std::string>{});
 }
 
+TEST_F(OutputDirectoryTest, ErrorsNameTheFinalPlaceOfAFile) {
+  OutputDirectory outputs(root_, {"a"});
+  outputs.Prepare();
+  try {
+    outputs.Write("a", [](const std::string& path) {
+      throw Error(ErrorCode::kOutput, path + ": the disk is full");
+    });
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), (root_ / "a").string() + ": the disk is full");
+  }
+}
+
 TEST_F(OutputDirectoryTest, FolderThatIsAFileIsRefused) {
-  Write(root_ / "file", "");
+  WriteText(root_ / "file", "");
   OutputDirectory outputs(root_ / "file", {"a"});
   ExpectOutputError(&outputs, (root_ / "file").string() + ": is not a directory");
   OutputDirectory below(root_ / "file" / "out", {"a"});
