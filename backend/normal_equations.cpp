@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "backend/constraint_error.h"
 
@@ -31,8 +32,11 @@ void NormalEquations::AddNodes(int count, const std::vector<int>& held) {
   gradient_.resize(3 * next);
 }
 
-bool NormalEquations::SetStructure(const PoseGraph& graph, const std::vector<int>& held) {
-  if (!IsGrown(graph, held)) {
+bool NormalEquations::SetStructure(const PoseGraph& graph) {
+  components_ = ConnectedComponents(graph);
+  std::vector<int> held = HeldNodes(graph, components_);
+  const bool is_grown = IsGrown(graph, held);
+  if (!is_grown) {
     variable_of_node_.clear();
     links_.clear();
     hessian_.Clear();
@@ -40,7 +44,7 @@ bool NormalEquations::SetStructure(const PoseGraph& graph, const std::vector<int
   const int old_variables = hessian_.cols();
   const int old_blocks = hessian_.block_count();
   AddNodes(static_cast<int>(graph.poses.size()), held);
-  held_ = held;
+  held_ = std::move(held);
   for (std::size_t k = links_.size(); k < graph.constraints.size(); ++k) {
     const Constraint& constraint = graph.constraints[k];
     const int from = variable(constraint.from);
@@ -50,8 +54,7 @@ bool NormalEquations::SetStructure(const PoseGraph& graph, const std::vector<int
         both_free ? hessian_.FindOrAddBlock(std::min(from, to), std::max(from, to)) : -1;
     links_.push_back({constraint.from, constraint.to, block});
   }
-  return hessian_.cols() != old_variables || hessian_.block_count() != old_blocks ||
-         old_variables == 0;
+  return !is_grown || hessian_.cols() != old_variables || hessian_.block_count() != old_blocks;
 }
 
 double NormalEquations::Linearize(const PoseGraph& graph, const RobustLoss& loss) {

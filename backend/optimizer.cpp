@@ -60,33 +60,49 @@ Optimizer::Optimizer(const OptimizerOptions& options) : options_(options) { opti
 
 OptimizerResult Optimizer::Optimize(PoseGraph* graph) {
   Validate(*graph);
-  const bool pattern_changed = equations_.SetStructure(*graph, HeldNodes(*graph));
+  if (equations_.SetStructure(*graph)) factor_.Analyze(equations_.hessian());
   OptimizerResult result;
-  result.initial_error = equations_.Linearize(*graph, options_.loss);
+  result.initial_error = Linearize(*graph);
   result.final_error = result.initial_error;
-  if (equations_.variable_count() == 0) return result;
-  if (pattern_changed) solver_.Analyze(equations_.hessian());
+  if (equations_.variable_count() > 0) Iterate(graph, &result);
+  poses_ = graph->poses;
+  return result;
+}
 
-  while (true) {
-    if (result.iterations == options_.max_iterations) {
-      result.termination = Termination::kMaxIterations;
-      return result;
-    }
-    switch (TakeStep(graph, &result)) {
+void Optimizer::Iterate(PoseGraph* graph, OptimizerResult* result) {
+  while (result->iterations < options_.max_iterations) {
+    switch (TakeStep(graph, result)) {
       case Step::kNegligible:
-        result.termination = Termination::kConverged;
-        return result;
+        result->termination = Termination::kConverged;
+        return;
       case Step::kNotFound:
-        result.termination = Termination::kStalled;
-        return result;
+        result->termination = Termination::kStalled;
+        return;
       case Step::kIndefinite:
-        result.termination = Termination::kIndefinite;
-        return result;
+        result->termination = Termination::kIndefinite;
+        return;
       case Step::kTaken:
-        ++result.iterations;
-        equations_.Linearize(*graph, options_.loss);
+        ++result->iterations;
+        Linearize(*graph);
     }
   }
+  result->termination = Termination::kMaxIterations;
+}
+
+double Optimizer::Linearize(const PoseGraph& graph) {
+  factor_is_current_ = false;
+  return equations_.Linearize(graph, options_.loss);
+}
+
+bool Optimizer::Factorize(double damping) {
+  const bool is_definite = factor_.Factorize(equations_.hessian(), damping);
+  factor_is_current_ = is_definite && damping == 0.0;
+  return is_definite;
+}
+
+std::optional<Marginals> Optimizer::ComputeMarginals() {
+  if (!factor_is_current_ && !Factorize(0.0)) return std::nullopt;
+  return Marginals(poses_, equations_, factor_);
 }
 
 Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
@@ -97,13 +113,13 @@ Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
   bool was_rejected = false;
   bool was_raised = false;
   while (damping <= kLargestDamping) {
-    if (!solver_.Factorize(equations_.hessian(), damping)) {
+    if (!Factorize(damping)) {
       damping = Stronger(damping);
       was_raised = true;
       continue;
     }
     was_definite = true;
-    const Eigen::VectorXd dx = solver_.Solve(-equations_.gradient());
+    const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
     if (PromisedDecrease(dx, damping) <= negligible) {
       if (was_rejected) return Step::kNotFound;
       if (was_raised || damping == 0.0) return Step::kNegligible;
@@ -133,18 +149,17 @@ double Optimizer::PromisedDecrease(const Eigen::VectorXd& dx, double damping) co
 }
 
 bool Optimizer::TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error) {
-  poses_before_ = graph->poses;
+  poses_ = graph->poses;
   for (std::size_t node = 0; node < graph->poses.size(); ++node) {
     const int variable = equations_.variable(static_cast<int>(node));
-    if (variable < 0) continue;
-    graph->poses[node] = poses_before_[node].Boxplus(dx.segment<3>(3 * variable));
+    if (variable >= 0) graph->poses[node] = poses_[node].Boxplus(dx.segment<3>(3 * variable));
   }
   const double new_error = NormalEquations::Error(*graph, options_.loss);
   if (new_error < *error) {
     *error = new_error;
     return true;
   }
-  graph->poses.swap(poses_before_);
+  graph->poses.swap(poses_);
   return false;
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "backend/marginals.h"
 #include "backend/normal_equations.h"
 #include "backend/pose_graph.h"
 #include "backend/robust_loss.h"
-#include "backend/sparse_solver.h"
+#include "backend/sparse_cholesky.h"
 
 namespace loopgrid {
 
@@ -55,20 +57,27 @@ class Optimizer {
   /// graph is not valid (see Validate); a graph with several components is optimised as such.
   OptimizerResult Optimize(PoseGraph* graph);
 
+  /// Covariances of the nodes at the poses where the last call ended; nothing if the Hessian there
+  /// is not positive definite. Valid until the optimiser is used again or moved.
+  std::optional<Marginals> ComputeMarginals();
+
   /// Hessian and gradient at the poses where the last call ended.
   const NormalEquations& equations() const { return equations_; }
 
  private:
   enum class Step { kTaken, kNegligible, kNotFound, kIndefinite };
+  void Iterate(PoseGraph* graph, OptimizerResult* result);
   Step TakeStep(PoseGraph* graph, OptimizerResult* result);
-
   double PromisedDecrease(const Eigen::VectorXd& dx, double damping) const;
   bool TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error);
+  double Linearize(const PoseGraph& graph);
+  bool Factorize(double damping);
 
   OptimizerOptions options_;
   NormalEquations equations_;
-  SparseSolver solver_;
-  std::vector<SE2> poses_before_;  // of the step being tried
+  SparseCholesky<3> factor_;
+  bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
+  std::vector<SE2> poses_;          // before the step being tried; at the end, the result
 };
 
 }  // namespace loopgrid

@@ -32,7 +32,8 @@ void Validate(const PoseGraph& graph);
 std::vector<int> ConnectedComponents(const PoseGraph& graph);
 
 /// The nodes that make the optimum unique, ascending: `graph.fixed`, and the first node of each
-/// connected component that has no fixed node. Relative poses do not depend on the latter choice.
-std::vector<int> HeldNodes(const PoseGraph& graph);
+/// component (see ConnectedComponents) without a fixed node. Which node of a component is held
+/// makes no difference to relative poses.
+std::vector<int> HeldNodes(const PoseGraph& graph, const std::vector<int>& components);
 
 }  // namespace loopgrid

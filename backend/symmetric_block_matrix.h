@@ -4,11 +4,18 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace loopgrid {
+
+/// Place of an off-diagonal block.
+struct BlockPlace {
+  int row;
+  int col;
+};
 
 /// A sparse symmetric matrix of kDim x kDim blocks of which only the upper triangle is kept. The
 /// blocks are stored in the order in which they were added, so the pattern can grow at any time
@@ -17,14 +24,10 @@ template <int kDim>
 class SymmetricBlockMatrix {
  public:
   using Block = Eigen::Matrix<double, kDim, kDim>;
-  struct Entry {
-    int row;
-    int col;  ///< row < col
-  };
 
   void Clear() {
     diagonal_.clear();
-    entries_.clear();
+    places_.clear();
     values_.clear();
     lookup_.clear();
   }
@@ -35,9 +38,9 @@ class SymmetricBlockMatrix {
   /// Index of the off-diagonal block at (row, col), row < col; a new one starts at zero.
   int FindOrAddBlock(int row, int col) {
     const auto key = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint32_t>(col);
-    const auto [place, is_new] = lookup_.try_emplace(key, static_cast<int>(entries_.size()));
+    const auto [place, is_new] = lookup_.try_emplace(key, static_cast<int>(places_.size()));
     if (is_new) {
-      entries_.push_back({row, col});
+      places_.push_back({row, col});
       values_.push_back(Block::Zero());
     }
     return place->second;
@@ -49,8 +52,9 @@ class SymmetricBlockMatrix {
   }
 
   int cols() const { return static_cast<int>(diagonal_.size()); }  ///< in blocks
-  int block_count() const { return static_cast<int>(entries_.size()); }
-  const Entry& entry(int block) const { return entries_[static_cast<std::size_t>(block)]; }
+  int block_count() const { return static_cast<int>(places_.size()); }
+  /// row < col for each
+  std::span<const BlockPlace> places() const { return places_; }
 
   Block& diagonal(int col) { return diagonal_[static_cast<std::size_t>(col)]; }
   const Block& diagonal(int col) const { return diagonal_[static_cast<std::size_t>(col)]; }
@@ -59,9 +63,9 @@ class SymmetricBlockMatrix {
 
  private:
   std::vector<Block> diagonal_;
-  std::vector<Entry> entries_;
+  std::vector<BlockPlace> places_;
   std::vector<Block> values_;
-  std::unordered_map<std::uint64_t, int> lookup_;  // (row, col) -> index in entries_
+  std::unordered_map<std::uint64_t, int> lookup_;  // (row, col) -> index in places_
 };
 
 }  // namespace loopgrid

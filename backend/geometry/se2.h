@@ -50,6 +50,11 @@ class SE2 {
   /// The d for which `origin.Boxplus(d)` is this pose.
   Tangent Boxminus(const SE2& origin) const { return (origin.Inverse() * *this).coordinates(); }
 
+  /// The matrix with `T * SE2(d) * T.Inverse()` = `SE2(Adjoint() * d)` for small d.
+  Eigen::Matrix3d Adjoint() const {
+    return (Eigen::Matrix3d() << c_, -s_, y_, s_, c_, -x_, 0.0, 0.0, 1.0).finished();
+  }
+
   /// Exponential map of a twist (vx, vy, omega).
   static SE2 Exp(const Tangent& twist);
 

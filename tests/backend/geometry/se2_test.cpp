@@ -64,6 +64,16 @@ TEST(SE2, ExpOfConstantTwistIsItsHalfTwice) {
   ExpectSamePose(half * half, SE2::Exp(twist), 1e-12);
 }
 
+TEST(SE2, AdjointMovesSmallMotionsBetweenFrames) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 50; ++i) {
+    const SE2 T = RandomPose(&random);
+    const Eigen::Vector3d d = 1e-9 * RandomPose(&random).coordinates();
+    const SE2 moved = T * SE2(d) * T.Inverse();
+    EXPECT_TRUE((T.Adjoint() * d).isApprox(moved.coordinates(), 1e-4)) << "seed 3, case " << i;
+  }
+}
+
 TEST(SE2, StaysExactFarAway) {
   const SE2 far(1e7, -1e7, 3.0);
   ExpectSamePose(far.Inverse() * far, SE2(), 1e-8);

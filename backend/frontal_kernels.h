@@ -1,0 +1,39 @@
+#pragma once
+
+namespace loopgrid {
+
+/// Dense kernels of the sparse Cholesky factorisation, for column-major matrices whose leading
+/// dimension is a multiple of kRowAlignment: rows are computed in groups of that many, so the
+/// padding rows below a matrix may be written. The same bits on every x86-64 machine: AVX2 is
+/// used where there is one, in the same order of operations.
+inline constexpr int kRowAlignment = 4;
+
+/// The smallest leading dimension for this many rows.
+constexpr int PaddedRows(int rows) {
+  return (rows + kRowAlignment - 1) / kRowAlignment * kRowAlignment;
+}
+
+/// Element (p, j) of a factor is `data[p * row_stride + j * col_stride]`: a matrix or a transpose.
+struct StridedMatrix {
+  const double* data;
+  int row_stride;
+  int col_stride;
+};
+
+/// C += A * B, with C rows x cols, A rows x depth. `rows` is rounded up to a multiple of
+/// kRowAlignment.
+void MultiplyAdd(double* C, int ldc, const double* A, int lda, StridedMatrix B, int rows, int cols,
+                 int depth);
+
+/// C -= A * B, likewise.
+void MultiplySubtract(double* C, int ldc, const double* A, int lda, StridedMatrix B, int rows,
+                      int cols, int depth);
+
+/// Eliminates the first `pivots` columns of the symmetric `size` x `size` matrix F whose lower
+/// triangle is given: they become columns of its Cholesky factor, the rest becomes the Schur
+/// complement. The strict upper triangle is scratch. False when a pivot is not above its entry in
+/// `smallest_pivots`.
+[[nodiscard]] bool EliminateColumns(double* F, int ld, int size, int pivots,
+                                    const double* smallest_pivots);
+
+}  // namespace loopgrid

@@ -1,0 +1,232 @@
+#include "backend/sparse_cholesky.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "backend/frontal_kernels.h"
+
+namespace loopgrid {
+namespace {
+
+/// A pivot this small relative to its diagonal entry is rounding noise: the matrix is singular.
+constexpr double kSmallestPivot = 1e-13;
+
+using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+using ConstColumnMajor = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+std::size_t PaddedArea(int rows, int cols) {
+  return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
+}
+
+}  // namespace
+
+template <int kDim>
+void SparseCholesky<kDim>::Analyze(const Matrix& H) {
+  structure_ = AnalyzeFactor(H.cols(), H.places());
+  const int count = structure_.supernode_count();
+  first_child_.assign(Index(count), -1);
+  sibling_.assign(Index(count), -1);
+  for (int s = 0; s < count; ++s) {
+    const int parent = structure_.parent[Index(s)];
+    if (parent == -1) continue;
+    sibling_[Index(s)] = first_child_[Index(parent)];
+    first_child_[Index(parent)] = s;
+  }
+  PlaceSources(H);
+  PlaceMemory();
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::PlaceSources(const Matrix& H) {
+  const int count = structure_.supernode_count();
+  std::vector<int> supernode_of(structure_.order.size());
+  for (int s = 0; s < count; ++s) {
+    for (int k = structure_.first_column[Index(s)]; k < structure_.first_column[Index(s) + 1];
+         ++k) {
+      supernode_of[Index(k)] = s;
+    }
+  }
+  // Counting sort of the blocks by the supernode that eliminates their column.
+  first_source_.assign(Index(count) + 1, 0);
+  const auto supernode_at = [&](const BlockPlace& place) {
+    return supernode_of[Index(
+        std::min(structure_.position[Index(place.row)], structure_.position[Index(place.col)]))];
+  };
+  for (const BlockPlace& place : H.places()) ++first_source_[Index(supernode_at(place)) + 1];
+  for (int s = 0; s < count; ++s) first_source_[Index(s) + 1] += first_source_[Index(s)];
+  sources_.resize(H.places().size());
+  std::vector<std::size_t> next(first_source_.begin(), first_source_.end() - 1);
+  for (int block = 0; block < H.block_count(); ++block) {
+    const BlockPlace& place = H.places()[Index(block)];
+    const int a = structure_.position[Index(place.row)];
+    const int b = structure_.position[Index(place.col)];
+    const int s = supernode_at(place);
+    sources_[next[Index(s)]++] = {block, structure_.PositionInFront(s, std::max(a, b)),
+                                  std::min(a, b) - structure_.first_column[Index(s)], a < b};
+  }
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::PlaceMemory() {
+  const int count = structure_.supernode_count();
+  panel_start_.assign(Index(count) + 1, 0);
+  update_start_.assign(Index(count), 0);
+  std::size_t stack_top = 0;
+  std::size_t stack_size = 0;
+  std::size_t front_size = 0;
+  std::size_t largest = 0;
+  for (int s = 0; s < count; ++s) {
+    const int size = FrontSize(s);
+    panel_start_[Index(s) + 1] =
+        panel_start_[Index(s)] + PaddedArea(size, kDim * structure_.columns(s));
+    front_size = std::max(front_size, PaddedArea(size, size));
+    largest = std::max(largest, Index(size));
+    for (int child = first_child_[Index(s)]; child != -1; child = sibling_[Index(child)]) {
+      stack_top = update_start_[Index(child)];
+    }
+    const int below = kDim * structure_.row_count(s);
+    update_start_[Index(s)] = stack_top;
+    stack_top += PaddedArea(below, below);
+    stack_size = std::max(stack_size, stack_top);
+  }
+  // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows.
+  values_.assign(panel_start_.back() + kRowAlignment, 0.0);
+  front_.assign(front_size + kRowAlignment, 0.0);
+  updates_.assign(stack_size, 0.0);
+  solve_work_.assign(largest, 0.0);
+  smallest_pivots_.assign(Index(kDim) * structure_.order.size(), 0.0);
+}
+
+template <int kDim>
+bool SparseCholesky<kDim>::Factorize(const Matrix& H, double damping) {
+  assert(H.cols() == static_cast<int>(structure_.order.size()));
+  for (int s = 0; s < structure_.supernode_count(); ++s) {
+    const int size = FrontSize(s);
+    const int ld = PaddedRows(size);
+    const int pivots = kDim * structure_.columns(s);
+    std::fill_n(front_.begin(), PaddedArea(size, size), 0.0);
+    Assemble(H, damping, s);
+    AddUpdates(s);
+    if (!EliminateColumns(front_.data(), ld, size, pivots,
+                          &smallest_pivots_[Index(kDim * structure_.first_column[Index(s)])])) {
+      return false;
+    }
+    std::copy_n(front_.begin(), PaddedArea(size, pivots),
+                values_.begin() + static_cast<std::ptrdiff_t>(panel_start_[Index(s)]));
+    const int below = size - pivots;
+    double* const update = updates_.data() + update_start_[Index(s)];
+    for (int j = 0; j < below; ++j) {
+      std::copy_n(&front_[PaddedArea(size, pivots + j) + Index(pivots + j)], below - j,
+                  update + PaddedArea(below, j) + j);
+    }
+  }
+  return true;
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::Assemble(const Matrix& H, double damping, int s) {
+  const int size = FrontSize(s);
+  ColumnMajor front(front_.data(), size, size, Eigen::OuterStride<>(PaddedRows(size)));
+  const int first = structure_.first_column[Index(s)];
+  for (int k = 0; k < structure_.columns(s); ++k) {
+    const Block& block = H.diagonal(structure_.order[Index(first + k)]);
+    front.template block<kDim, kDim>(kDim * k, kDim * k) = block;
+    for (int i = 0; i < kDim; ++i) {
+      front(kDim * k + i, kDim * k + i) *= 1.0 + damping;
+      smallest_pivots_[Index(kDim * (first + k) + i)] = kSmallestPivot * block(i, i);
+    }
+  }
+  for (std::size_t k = first_source_[Index(s)]; k < first_source_[Index(s) + 1]; ++k) {
+    const Source& source = sources_[k];
+    auto place = front.template block<kDim, kDim>(kDim * source.front_row, kDim * source.front_col);
+    if (source.transposed) {
+      place = H.off_diagonal(source.block).transpose();
+    } else {
+      place = H.off_diagonal(source.block);
+    }
+  }
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::AddUpdates(int s) {
+  const int ld = PaddedRows(FrontSize(s));
+  for (int child = first_child_[Index(s)]; child != -1; child = sibling_[Index(child)]) {
+    const int count = structure_.row_count(child);
+    const int* const target = &structure_.row_in_parent[structure_.first_row[Index(child)]];
+    const int update_ld = PaddedRows(kDim * count);
+    const double* update = updates_.data() + update_start_[Index(child)];
+    for (int b = 0; b < count; ++b) {
+      double* front = front_.data() + static_cast<std::ptrdiff_t>(kDim * target[b]) * ld;
+      for (int j = 0; j < kDim; ++j, front += ld, update += update_ld) {
+        // Above the diagonal of the diagonal block nothing is defined, nor needed.
+        for (int i = j; i < kDim; ++i) front[kDim * target[b] + i] += update[kDim * b + i];
+        for (int a = b + 1; a < count; ++a) {
+          for (int i = 0; i < kDim; ++i) front[kDim * target[a] + i] += update[kDim * a + i];
+        }
+      }
+    }
+  }
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::SolveForward(int s, double* x) const {
+  const int size = FrontSize(s);
+  const int pivots = kDim * structure_.columns(s);
+  const int below = size - pivots;
+  Eigen::Map<Eigen::VectorXd> own(x + kDim * structure_.first_column[Index(s)], pivots);
+  const ConstColumnMajor L(panel(s), size, pivots, Eigen::OuterStride<>(PaddedRows(size)));
+  Eigen::Map<Eigen::VectorXd> update(solve_work_.data(), below);
+  update.setZero();
+  for (int c = 0; c < pivots; ++c) {
+    own[c] /= L(c, c);
+    own.tail(pivots - c - 1) -= own[c] * L.col(c).segment(c + 1, pivots - c - 1);
+    update += own[c] * L.col(c).tail(below);
+  }
+  const int* const rows = structure_.rows.data() + structure_.first_row[Index(s)];
+  for (int k = 0; k < structure_.row_count(s); ++k) {
+    for (int i = 0; i < kDim; ++i) x[kDim * rows[k] + i] -= update[kDim * k + i];
+  }
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::SolveBackward(int s, double* x) const {
+  const int size = FrontSize(s);
+  const int pivots = kDim * structure_.columns(s);
+  const int below = size - pivots;
+  Eigen::Map<Eigen::VectorXd> own(x + kDim * structure_.first_column[Index(s)], pivots);
+  const ConstColumnMajor L(panel(s), size, pivots, Eigen::OuterStride<>(PaddedRows(size)));
+  Eigen::Map<Eigen::VectorXd> solved(solve_work_.data(), below);
+  const int* const rows = structure_.rows.data() + structure_.first_row[Index(s)];
+  for (int k = 0; k < structure_.row_count(s); ++k) {
+    for (int i = 0; i < kDim; ++i) solved[kDim * k + i] = x[kDim * rows[k] + i];
+  }
+  for (int c = pivots - 1; c >= 0; --c) {
+    const int rest = pivots - c - 1;
+    const double sum =
+        L.col(c).segment(c + 1, rest).dot(own.tail(rest)) + L.col(c).tail(below).dot(solved);
+    own[c] = (own[c] - sum) / L(c, c);
+  }
+}
+
+template <int kDim>
+Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
+  const int n = static_cast<int>(structure_.order.size());
+  assert(rhs.rows() == kDim * n);
+  Eigen::MatrixXd result(rhs.rows(), rhs.cols());
+  Eigen::VectorXd x(rhs.rows());  // in elimination order
+  for (int col = 0; col < static_cast<int>(rhs.cols()); ++col) {
+    for (int k = 0; k < n; ++k) {
+      x.segment<kDim>(kDim * k) = rhs.col(col).segment<kDim>(kDim * structure_.order[Index(k)]);
+    }
+    for (int s = 0; s < structure_.supernode_count(); ++s) SolveForward(s, x.data());
+    for (int s = structure_.supernode_count() - 1; s >= 0; --s) SolveBackward(s, x.data());
+    for (int k = 0; k < n; ++k) {
+      result.col(col).segment<kDim>(kDim * structure_.order[Index(k)]) = x.segment<kDim>(kDim * k);
+    }
+  }
+  return result;
+}
+
+template class SparseCholesky<3>;
+
+}  // namespace loopgrid
