@@ -11,8 +11,7 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kFarthestPosition = 1e7;  // metres from the origin
-constexpr double kMostTurned = 1e5;        // radians
+constexpr double kMostTurned = 1e5;  // radians
 
 constexpr std::array<std::pair<std::string_view, CarmenTag>, 10> kTags = {{
     {"FLASER", CarmenTag::kFlaser},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backend/geometry/se2.h"
+#include "frontend/log/observation.h"
 
 namespace loopgrid {
 
@@ -51,17 +52,10 @@ struct CarmenLaserMessage {
 
 /// Reads a line of one of the laser tags. Returns what is wrong with it, or an empty string;
 /// `message` is then complete. No reading gets through that is NaN, infinite or negative, no count
-/// beyond `kMaxReadings`, no pose that is not on this planet.
+/// above `kMaxReadings`, no position beyond `kFarthestPosition`.
 std::string ParseLaserLine(std::string_view line, CarmenLaserMessage* message);
 
 /// Reads an ODOM line's pose; returns what is wrong with it, or an empty string.
 std::string ParseOdometryLine(std::string_view line, SE2* T_odom_robot);
-
-/// The most readings a scan may have.
-inline constexpr int kMaxReadings = 1 << 14;
-
-/// Readings beyond this many metres are set to it: no planar laser sees so far, so they can only
-/// mean "no return", and whatever is computed from them stays finite.
-inline constexpr float kFarthestReading = 1e4F;
 
 }  // namespace loopgrid

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
+constexpr double kFullTurn = 2.0 * kPi + 1e-6;  // with room for rounding
 
 enum Laser : std::size_t { kFront, kRear, kOther };
 
@@ -70,15 +71,6 @@ double UsualFieldOfView(std::size_t steps) {
   }
 }
 
-/// A fan symmetric about straight ahead but for the beam that an even count lacks.
-BeamAngles SymmetricFan(std::size_t count, double resolution) {
-  const std::size_t steps = std::max<std::size_t>(count - count % 2, 1);
-  const double stated = static_cast<double>(steps) * resolution;
-  const bool usable = stated > 0.0 && stated <= 2.0 * kPi + 1e-6;
-  const double field_of_view = usable ? stated : UsualFieldOfView(steps);
-  return {-0.5 * field_of_view, field_of_view / static_cast<double>(steps)};
-}
-
 }  // namespace
 
 CarmenParameters::CarmenParameters() { lasers_[kRear].theta = kPi; }
@@ -107,17 +99,26 @@ const CarmenLaserParameters& CarmenParameters::Of(CarmenTag tag) const {
   return lasers_[LaserOf(tag)];
 }
 
+BeamAngles UsualBeamAngles(std::size_t count) {
+  const std::size_t steps = std::max<std::size_t>(count - count % 2, 1);
+  const double field_of_view = UsualFieldOfView(steps);
+  return {-0.5 * field_of_view, field_of_view / static_cast<double>(steps)};
+}
+
 BeamAngles BeamAnglesOf(const CarmenLaserMessage& message,
                         const CarmenLaserParameters& parameters) {
-  const std::size_t count = message.ranges.size();
-  if (!message.has_angles) return SymmetricFan(count, parameters.resolution * kDegree);
-  const double intervals = static_cast<double>(count) - 1.0;
-  double step = message.angular_resolution;
-  if (step == 0.0 && count > 1) step = message.field_of_view / intervals;
-  if (step == 0.0 || std::abs(step) * intervals > 2.0 * kPi + 1e-6) {
-    return SymmetricFan(count, 0.0);
+  const BeamAngles usual = UsualBeamAngles(message.ranges.size());
+  const double intervals = static_cast<double>(message.ranges.size()) - 1.0;
+  BeamAngles stated;
+  if (message.has_angles) {
+    stated = {message.start_angle, message.angular_resolution};
+    if (stated.step == 0.0 && intervals > 0.0) stated.step = message.field_of_view / intervals;
+  } else if (parameters.resolution > 0.0) {
+    stated.step = parameters.resolution * kDegree;
+    stated.first = usual.first * stated.step / usual.step;
   }
-  return {message.start_angle, step};
+  const double span = std::abs(stated.step) * intervals;
+  return stated.step != 0.0 && span <= kFullTurn ? stated : usual;
 }
 
 }  // namespace loopgrid

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -45,10 +46,13 @@ struct BeamAngles {
   double step = 0.0;
 };
 
+/// The fan that scanners with so many readings have: 180 and 181 readings step by 1 degree from
+/// -90, 360 and 361 by half a degree, and so on; counts that only wider scanners have get their
+/// field of view. An even count lacks the last beam of a symmetric fan: 180 readings end at +89.
+BeamAngles UsualBeamAngles(std::size_t count);
+
 /// The directions of a message's beams. ROBOTLASER and RAWLASER state them. For FLASER and RLASER
-/// the resolution comes from PARAM, else from the count: 180 and 181 readings span 180 degrees by
-/// 1, 360 and 361 by 0.5, and so on; counts that only wider scanners have get their field of view.
-/// An even count lacks the last beam of the symmetric fan: 180 readings end at +89 degrees.
+/// the resolution comes from PARAM if given there, and the fan is as in UsualBeamAngles().
 BeamAngles BeamAnglesOf(const CarmenLaserMessage& message, const CarmenLaserParameters& parameters);
 
 }  // namespace loopgrid

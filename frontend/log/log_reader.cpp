@@ -4,6 +4,7 @@
 
 #include "backend/base/error.h"
 #include "frontend/log/carmen_reader.h"
+#include "frontend/log/rawlog_reader.h"
 
 namespace loopgrid {
 
@@ -20,6 +21,7 @@ std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptio
   InputFile file(path);
   const std::string_view start = file.Peek(4096);
   if (start.empty()) throw Error(ErrorCode::kInput, path + ": is empty");
+  if (LooksLikeRawlog(start)) return std::make_unique<RawlogReader>(std::move(file), options);
   if (start.find('\0') != start.npos) {
     throw Error(ErrorCode::kInput, path + ": is neither a CARMEN log nor an MRPT rawlog");
   }

@@ -6,8 +6,19 @@
 
 namespace loopgrid {
 
-/// One sweep of a planar laser as the log has it. Ranges are finite and not negative; the readings
-/// that stand for "no return" are still in there (SensorModel tells them from walls).
+/// The most readings a scan may have.
+inline constexpr int kMaxReadings = 1 << 14;
+
+/// Readers set what is beyond this many metres to it: no planar laser sees so far, so it can only
+/// mean "no return", and whatever is computed from it stays finite.
+inline constexpr float kFarthestReading = 1e4F;
+
+/// Readers refuse a pose further than this from the origin, metres.
+inline constexpr double kFarthestPosition = 1e7;
+
+/// One sweep of a planar laser as the log has it. There is at least one range, and all are finite
+/// and not negative; the readings that stand for "no return" are still in there (SensorModel tells
+/// them from walls).
 struct LaserScan {
   SE2 T_robot_laser;          ///< where the laser sits on the robot
   double first_angle = 0.0;   ///< of ranges[0] in the laser frame, radians

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "backend/base/input_file.h"
+#include "frontend/log/log_reader.h"
+
+namespace loopgrid {
+
+/// Whether a file that begins so is a stream of MRPT objects (unpacked).
+bool LooksLikeRawlog(std::string_view start);
+
+/// Reads MRPT rawlogs: pairs of action and sensory frame, whose odometry increments are added up
+/// from the origin, and plain streams of observations with absolute odometry. Of several lasers the
+/// first horizontal one is used, told from the others by its label and pose. Readings flagged
+/// invalid are given out as the scan's maximum range. Objects have no length, so the log ends at
+/// the first that cannot be read (cut, corrupt or of an unknown class); it counts as malformed.
+class RawlogReader : public LogReader {
+ public:
+  /// Throws Error (kInput) on the first Next() if not even one object can be read.
+  RawlogReader(InputFile file, const LogReaderOptions& options);
+  ~RawlogReader() override;
+
+  bool Next(Observation* observation) override;
+  const LogStatistics& statistics() const override;
+  double progress() const override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace loopgrid
