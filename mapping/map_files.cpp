@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -30,14 +32,14 @@ CellBox ImageBox(const OccupancyGrid& grid) {
   return seen.empty() ? CellBox{0, 0, 1, 1} : seen;
 }
 
-std::vector<std::uint8_t> Encode(const GreyImage& image, const char* extension,
-                                 const std::vector<int>& parameters) {
+std::string Encode(const GreyImage& image, const char* extension,
+                   const std::vector<int>& parameters) {
   // OpenCV takes a pointer to non-const but does not write.
   const cv::Mat view(image.height, image.width, CV_8UC1,
                      const_cast<std::uint8_t*>(image.pixels.data()));
   std::vector<std::uint8_t> bytes;
   cv::imencode(extension, view, bytes, parameters);
-  return bytes;
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace
@@ -62,11 +64,11 @@ GreyImage DrawMap(const OccupancyGrid& grid) {
   return image;
 }
 
-std::vector<std::uint8_t> EncodePng(const GreyImage& image) {
+std::string EncodePng(const GreyImage& image) {
   return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 6});
 }
 
-std::vector<std::uint8_t> EncodePgm(const GreyImage& image) { return Encode(image, ".pgm", {}); }
+std::string EncodePgm(const GreyImage& image) { return Encode(image, ".pgm", {}); }
 
 std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
   const CellBox box = ImageBox(grid);
@@ -79,6 +81,14 @@ std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
       "free_thresh: 0.196\n",
       image_name, grid.resolution(), static_cast<double>(box.min_x) * grid.resolution(),
       static_cast<double>(box.min_y) * grid.resolution());
+}
+
+void WriteMapFiles(const OccupancyGrid& grid, const std::string& folder) {
+  const std::filesystem::path path(folder);
+  const GreyImage image = DrawMap(grid);
+  WriteFileAtomically(path / "map.png", EncodePng(image));
+  WriteFileAtomically(path / "map.pgm", EncodePgm(image));
+  WriteFileAtomically(path / "map.yaml", MapYaml(grid, "map.pgm"));
 }
 
 }  // namespace loopgrid

@@ -28,11 +28,15 @@ struct GreyImage {
 GreyImage DrawMap(const OccupancyGrid& grid);
 
 /// The bytes of map.png and map.pgm: 8 bits, grey. The same image gives the same bytes.
-std::vector<std::uint8_t> EncodePng(const GreyImage& image);
-std::vector<std::uint8_t> EncodePgm(const GreyImage& image);
+std::string EncodePng(const GreyImage& image);
+std::string EncodePgm(const GreyImage& image);
 
 /// The text of map.yaml in the convention of ROS's map_server: `origin` is the lower left corner of
 /// the image in the map frame (metres, metres, radians).
 std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name);
+
+/// Writes map.png, map.pgm and map.yaml into a folder that exists, each whole or not at all. Throws
+/// Error: kOutput if one cannot be written, kUsage as DrawMap.
+void WriteMapFiles(const OccupancyGrid& grid, const std::string& folder);
 
 }  // namespace loopgrid

@@ -173,9 +173,9 @@ void OccupancyGrid::ClearRays(std::uint16_t scan_number) {
   const auto clear = [cells = cells_.data(), origin, scan_number, width = box_.width(),
                       miss = miss_, lowest = -limit_](std::int64_t x, std::int64_t y) {
     Cell& cell = cells[y * width + x - origin];
-    if (cell.last_scan == scan_number) return;
+    const int change = miss * (cell.last_scan != scan_number);  // no branch: mostly mispredicted
+    cell.evidence = static_cast<std::int16_t>(std::max(cell.evidence + change, lowest));
     cell.last_scan = scan_number;
-    cell.evidence = static_cast<std::int16_t>(std::max(cell.evidence + miss, lowest));
   };
   for (GridPoint hit : beams_.hits) WalkRay(beams_.origin, hit, clear);
   for (GridPoint end : beams_.no_return_ends) WalkRay(beams_.origin, end, clear);
