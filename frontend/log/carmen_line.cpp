@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "backend/base/parse_number.h"
+#include "frontend/log/plausible_pose.h"
 
 namespace loopgrid {
 namespace {
-
-constexpr double kMostTurned = 1e5;  // radians
 
 constexpr std::array<std::pair<std::string_view, CarmenTag>, 10> kTags = {{
     {"FLASER", CarmenTag::kFlaser},
@@ -33,7 +32,7 @@ std::string ParsePose(FieldCursor* fields, const char* whose, SE2* pose) {
   if (!fields->Next(&x) || !fields->Next(&y) || !fields->Next(&theta)) {
     return std::string("the pose of the ") + whose + " is not three finite numbers";
   }
-  if (std::max(std::abs(x), std::abs(y)) > kFarthestPosition || std::abs(theta) > kMostTurned) {
+  if (!IsPlausiblePose(x, y, theta)) {
     return std::string("the pose of the ") + whose + " is out of any bounds";
   }
   *pose = SE2(x, y, theta);

@@ -52,7 +52,7 @@ struct CarmenLaserMessage {
 
 /// Reads a line of one of the laser tags. Returns what is wrong with it, or an empty string;
 /// `message` is then complete. No reading gets through that is NaN, infinite or negative, no count
-/// above `kMaxReadings`, no position beyond `kFarthestPosition`.
+/// above `kMaxReadings`, no implausible pose.
 std::string ParseLaserLine(std::string_view line, CarmenLaserMessage* message);
 
 /// Reads an ODOM line's pose; returns what is wrong with it, or an empty string.

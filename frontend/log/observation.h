@@ -13,9 +13,6 @@ inline constexpr int kMaxReadings = 1 << 14;
 /// mean "no return", and whatever is computed from it stays finite.
 inline constexpr float kFarthestReading = 1e4F;
 
-/// Readers refuse a pose further than this from the origin, metres.
-inline constexpr double kFarthestPosition = 1e7;
-
 /// One sweep of a planar laser as the log has it. There is at least one range, and all are finite
 /// and not negative; the readings that stand for "no return" are still in there (SensorModel tells
 /// them from walls).

@@ -18,6 +18,7 @@
 
 #include "backend/base/error.h"
 #include "frontend/log/carmen_parameters.h"
+#include "frontend/log/plausible_pose.h"
 
 namespace loopgrid {
 namespace {
@@ -78,10 +79,7 @@ SE2 PlanarPose(const mrpt::poses::CPose3D& pose) { return SE2(pose.x(), pose.y()
 
 SE2 ToSE2(const mrpt::poses::CPose2D& pose) { return SE2(pose.x(), pose.y(), pose.phi()); }
 
-bool IsPlausible(const SE2& pose) {
-  return pose.coordinates().allFinite() &&
-         pose.translation().cwiseAbs().maxCoeff() <= kFarthestPosition;
-}
+bool IsPlausible(const SE2& pose) { return IsPlausiblePose(pose.x(), pose.y(), pose.theta()); }
 
 /// Converts the readings; returns what is wrong with them, or an empty string.
 std::string ConvertRanges(const mrpt::obs::CObservation2DRangeScan& from, LaserScan* scan) {

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cmath>
+
+namespace loopgrid {
+
+/// Whether a pose from a file can be meant: finite, within ten thousand kilometres of the origin,
+/// and not turned so often that the angle has lost its digits. Metres and radians.
+inline bool IsPlausiblePose(double x, double y, double theta) {
+  constexpr double kFarthest = 1e7;
+  constexpr double kMostTurned = 1e5;
+  return std::abs(x) <= kFarthest && std::abs(y) <= kFarthest && std::abs(theta) <= kMostTurned;
+}
+
+}  // namespace loopgrid
