@@ -51,8 +51,8 @@ CorrelativeSearch::CorrelativeSearch(const LikelihoodTable& table,
     std::vector<int>& indices = cells_.emplace_back();
     indices.reserve(points.size());
     for (const Eigen::Vector2f& p : points) {
-      const Eigen::Vector2i cell = table_.CellOf({c * p.x() - s * p.y() + translation_x,
-                                                  s * p.x() + c * p.y() + translation_y});
+      const Eigen::Vector2i cell = table_.CellOf(
+          {c * p.x() - s * p.y() + translation_x, s * p.x() + c * p.y() + translation_y});
       // A point whose whole window is not inside the table only ever meets its empty margin.
       const bool inside = cell.x() >= cells_x_ && cell.x() + cells_x_ < table_.width() &&
                           cell.y() >= cells_y_ && cell.y() + cells_y_ < table_.height();

@@ -99,7 +99,7 @@ class CorrelativeSearch {
   int cells_x_;
   int cells_y_;
   int angle_steps_;
-  int full_score_;  // score of a perfect match, in table units
+  int full_score_;                       // score of a perfect match, in table units
   std::vector<std::vector<int>> cells_;  // per angle: table index of each point
   std::vector<int> penalty_cells_;       // by distance from the centre
   std::vector<int> penalty_angle_;

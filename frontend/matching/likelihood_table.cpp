@@ -26,8 +26,8 @@ void LikelihoodTable::Rasterize(std::span<const Eigen::Vector2f> points, float s
   for (int y = -reach; y <= reach; ++y) {
     for (int x = -reach; x <= reach; ++x) {
       const float squared = static_cast<float>(x * x + y * y) * resolution_ * resolution_;
-      kernel[static_cast<std::size_t>((y + reach) * side + x + reach)] =
-          static_cast<std::uint8_t>(std::lround(255.0F * std::exp(-0.5F * squared / (sigma * sigma))));
+      kernel[static_cast<std::size_t>((y + reach) * side + x + reach)] = static_cast<std::uint8_t>(
+          std::lround(255.0F * std::exp(-0.5F * squared / (sigma * sigma))));
     }
   }
   std::uint8_t* cells = levels_.front().data();
@@ -62,7 +62,8 @@ void LikelihoodTable::BuildPyramid(int levels) {
     std::vector<std::uint8_t> level(size);
     for (int y = 0; y < height_; ++y) {
       const std::uint8_t* a = rows.data() + static_cast<std::ptrdiff_t>(y) * width_;
-      const std::uint8_t* b = y + shift < height_ ? a + static_cast<std::ptrdiff_t>(shift) * width_ : a;
+      const std::uint8_t* b =
+          y + shift < height_ ? a + static_cast<std::ptrdiff_t>(shift) * width_ : a;
       std::uint8_t* out = level.data() + static_cast<std::ptrdiff_t>(y) * width_;
       for (int x = 0; x < width_; ++x) out[x] = std::max(a[x], b[x]);
     }

@@ -9,7 +9,8 @@
 
 namespace loopgrid {
 
-/// A piece of surface: hits of several scans that fell into the same small square with like normals.
+/// A piece of surface: hits of several scans that fell into the same small square with like
+/// normals.
 struct Surfel {
   Eigen::Vector2f position;  ///< mean of the hits, metres
   Eigen::Vector2f normal;    ///< unit, towards where it was seen from; (0, 0) if unknown

@@ -86,8 +86,8 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
     Eigen::Matrix3d H = to_information * equations.H + prior.information;
     // A direction that nothing speaks of stays where it is.
     H.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-3);
-    const Eigen::Vector3d b = to_information * equations.b +
-                              prior.information * pose.Boxminus(prior.T_map_robot);
+    const Eigen::Vector3d b =
+        to_information * equations.b + prior.information * pose.Boxminus(prior.T_map_robot);
     const Eigen::Vector3d step = -H.ldlt().solve(b);
     pose = pose.Boxplus(step);
     const bool settled = step.head<2>().norm() < 1e-4 && std::abs(step.z()) < 1e-5;

@@ -6,10 +6,10 @@
 namespace loopgrid {
 namespace {
 
-constexpr int kNeighbours = 3;         // on either side of a point
-constexpr float kMaxGap = 1.0F;        // metres between consecutive hits of one surface
-constexpr float kMaxReach = 0.6F;      // metres from the point to a neighbour that counts ...
-constexpr float kMaxFlatness = 0.15F;  // spread across the line over spread along it
+constexpr int kNeighbours = 3;          // on either side of a point
+constexpr float kMaxGap = 1.0F;         // metres between consecutive hits of one surface
+constexpr float kMaxReach = 0.6F;       // metres from the point to a neighbour that counts ...
+constexpr float kMaxFlatness = 0.15F;   // spread across the line over spread along it
 constexpr float kMaxThickness = 0.05F;  // metres, spread across the line
 
 // The line through the surface around hits[i]: unit normal, or zero where the points form no line.

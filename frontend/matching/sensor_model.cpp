@@ -6,12 +6,12 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kMinRange = 0.05;   // below: the sensor's way of saying "error"
-constexpr double kFarthest = 40.0;   // beams this long hit too rarely to help
+constexpr double kMinRange = 0.05;  // below: the sensor's way of saying "error"
+constexpr double kFarthest = 40.0;  // beams this long hit too rarely to help
 constexpr double kMaxReading = 1000.0;
-constexpr double kBinWidth = 0.5;    // metres
-// The no-return value makes a heap at the very top of the readings: more than twice as many as in the
-// four bins (2 m) below it together, and more than a handful.
+constexpr double kBinWidth = 0.5;  // metres
+// The no-return value makes a heap at the very top of the readings: more than twice as many as in
+// the four bins (2 m) below it together, and more than a handful.
 constexpr int kHeapNeighbours = 4;
 constexpr int kHeapFactor = 2;
 constexpr int kHeapLeast = 8;

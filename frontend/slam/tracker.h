@@ -18,8 +18,12 @@ struct TrackerOptions {
   double table_sigma = 0.07;       ///< metres
   double map_radius = 30.0;        ///< surfaces farther from the robot are left out, metres
   double min_score = 0.35;         ///< of the correlative search, 0..1
-  double min_inlier_share = 0.4;   ///< of the refined match, 0..1
+  double min_inlier_share = 0.25;  ///< of the refined match, 0..1
   int min_points = 20;             ///< scans with fewer hits are not matched
+  double lost_reach = 1.0;         ///< half width searched when the odometry was no help, metres
+  double lost_min_score = 0.65;    ///< what a match must reach then, 0..1 ...
+  double lost_min_inlier_share = 0.6;
+  double lost_max_second = 0.88;  ///< ... and no other place may reach this share of it
 };
 
 /// Where a scan is in the local map.
@@ -30,8 +34,8 @@ struct TrackedPose {
   double score = 0.0;  ///< of the correlative search, 0..1
 };
 
-/// Follows the robot from scan to scan: correlative search around the odometry's prediction in a map
-/// of recent nodes, then continuous refinement.
+/// Follows the robot from scan to scan: correlative search around the odometry's prediction in a
+/// map of recent nodes, then continuous refinement.
 class Tracker {
  public:
   explicit Tracker(const TrackerOptions& options = {}) : options_(options) {}
@@ -45,17 +49,17 @@ class Tracker {
   const SE2& pose() const { return T_map_robot_; }
 
  private:
+  /// What the search in a window around the prediction yields.
+  TrackedPose Match(const PointScan& scan, const SE2& predicted, const SE2& motion) const;
+  /// Odometry can be plainly wrong (a slip, a gap in the log): looks all around.
+  TrackedPose MatchWithoutOdometry(const PointScan& scan, const SE2& predicted) const;
+  TrackedPose Refine(const PointScan& scan, const SearchResult& found, const PosePrior& prior,
+                     double min_inlier_share) const;
+
   TrackerOptions options_;
   SE2 T_map_robot_;
   LocalMap map_;
   std::unique_ptr<LikelihoodTable> table_;
 };
-
-/// Thins points to about one a square of `spacing` metres, keeping order; a dense near wall then
-/// weighs no more than a far one.
-std::vector<Eigen::Vector2f> ThinPoints(std::span<const Eigen::Vector2f> points, float spacing);
-
-/// The angular step that moves most of `points` by no more than `resolution` metres, radians.
-double AngleStepFor(std::span<const Eigen::Vector2f> points, double resolution);
 
 }  // namespace loopgrid

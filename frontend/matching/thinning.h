@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace loopgrid {
+
+/// Drops each point that is closer than `spacing` metres to the last one kept, so that a dense near
+/// wall weighs no more than a far one. Keeps the order.
+std::vector<Eigen::Vector2f> ThinPoints(std::span<const Eigen::Vector2f> points, float spacing);
+
+/// The angular step that moves most of `points` (in the frame they turn in) by no more than
+/// `resolution` metres; radians, between 0.004 and 0.02.
+double AngleStepFor(std::span<const Eigen::Vector2f> points, double resolution);
+
+}  // namespace loopgrid

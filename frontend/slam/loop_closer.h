@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "frontend/slam/closure_matcher.h"
+#include "frontend/slam/closure_record.h"
+#include "frontend/slam/nodes.h"
+
+namespace loopgrid {
+
+struct LoopCloserOptions {
+  ClosureMatcherOptions matcher;
+  double gate_sigmas = 3.0;    ///< old nodes this close to the current pose are candidates
+  double view_distance = 4.0;  ///< nodes that see the same place may be this far apart, metres
+  int recent_nodes = 20;       ///< the newest nodes are not "old": tracking matches with them
+  double recent_path = 10.0;   ///< ... nor are those less than this much travel ago, metres
+  int max_candidates = 3;      ///< places matched for each node
+  double map_path = 10.0;      ///< nodes this much travel before and after make the map, metres
+  double map_radius = 25.0;    ///< surfaces farther from the old node are left out, metres
+  double surroundings_path =
+      4.0;  ///< travel that is searched with where the window is large, metres
+  double surroundings_from = 1.0;  ///< windows from this half width on are large, metres
+  double max_second_share = 0.92;  ///< a second peak this close to the best makes it ambiguous
+  int min_agreeing = 3;            ///< hypotheses that must agree before one is believed
+  double min_agreeing_path = 1.0;  ///< ... and must have been made over this much travel, metres
+  double min_separation = 2.0;     ///< of the consistent set, see ConsistentSet
+  int horizon_nodes = 20;          ///< hypotheses this many nodes old no longer count
+};
+
+/// Where an old place may be seen again.
+struct ClosureCandidate {
+  int node = 0;                  ///< best node of the place
+  double distance_sigmas = 0.0;  ///< how far the current pose is from it
+  SearchWindow window;           ///< in the frame of `node`
+};
+
+/// Proposes closures for the newest node and believes those that agree with each other.
+class LoopCloser {
+ public:
+  explicit LoopCloser(const LoopCloserOptions& options = {}) : options_(options) {}
+
+  /// Matches the newest node against the old places inside the gate. `covariances[j]`: of node j
+  /// relative to the newest, in j's own frame. Returns the indices of records to be believed now.
+  std::vector<int> Close(const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances);
+
+  /// Ends the run: what is still pending found no company.
+  void Finish();
+
+  const std::vector<ClosureRecord>& records() const { return records_; }
+  ClosureRecord& record(int index) { return records_[static_cast<std::size_t>(index)]; }
+
+ private:
+  std::vector<ClosureCandidate> FindCandidates(
+      const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const;
+  void Try(const Nodes& nodes, const ClosureCandidate& candidate);
+  std::vector<Eigen::Vector2f> Surroundings(const Nodes& nodes, double path) const;
+  double Agreement(const Nodes& nodes, const ClosureRecord& a, const ClosureRecord& b) const;
+  std::vector<int> Verify(const Nodes& nodes);
+
+  LoopCloserOptions options_;
+  std::vector<ClosureRecord> records_;
+  std::vector<int> pool_;  // indices of recent records that are pending or accepted
+};
+
+/// Covariance of a match: what its hits say, and never less than what matching can know.
+Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& information);
+
+}  // namespace loopgrid
