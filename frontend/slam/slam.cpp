@@ -150,7 +150,7 @@ class Slam::Impl {
     {
       const Stopwatch stopwatch(&statistics_.times.closing);
       const std::vector<Eigen::Matrix3d> covariances =
-          RelativeCovariances(graph_, nodes_.size() - 1);
+          RelativeCovariances(graph_, nodes_.size() - 1).value();
       believed = closer_.Close(nodes_, covariances);
     }
     if (believed.empty()) return false;
@@ -228,7 +228,7 @@ SE2 Slam::scan_laser(int scan) const {
 }
 const std::vector<ClosureRecord>& Slam::closures() const { return impl_->closer().records(); }
 std::vector<Eigen::Matrix3d> Slam::NodeCovariances() const {
-  return RelativeCovariances(impl_->graph_, impl_->nodes_.size() - 1);
+  return RelativeCovariances(impl_->graph_, impl_->nodes_.size() - 1).value();
 }
 SlamStatistics Slam::statistics() const { return impl_->statistics_; }
 
