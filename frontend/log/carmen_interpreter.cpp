@@ -19,13 +19,21 @@ CarmenMeaning CarmenInterpreter::ReadLaser(std::string_view line) {
   if (!problem_.empty()) return CarmenMeaning::kMalformed;
   if (message_.tag > used_) return CarmenMeaning::kOtherLaser;
   used_ = message_.tag;
-  if (message_.has_poses) {
-    T_odom_robot_ = message_.T_odom_robot;
-  } else {
-    T_odom_robot_ = latest_odometry_;
-    if (!had_odometry_) started_at_origin_ = true;
-  }
+  if (!message_.has_poses && !had_odometry_) started_at_origin_ = true;
   return CarmenMeaning::kScan;
+}
+
+Observation CarmenInterpreter::MakeObservation() const {
+  const CarmenLaserParameters& parameters = parameters_.Of(message_.tag);
+  const BeamAngles angles = BeamAnglesOf(message_, parameters);
+  Observation observation;
+  observation.timestamp = message_.timestamp;
+  observation.T_odom_robot = message_.has_poses ? message_.T_odom_robot : latest_odometry_;
+  observation.scan.first_angle = angles.first;
+  observation.scan.angle_step = angles.step;
+  observation.scan.max_range = message_.has_angles ? message_.max_range : parameters.max_range;
+  observation.scan.ranges = message_.ranges;
+  return observation;
 }
 
 CarmenMeaning CarmenInterpreter::ReadOdometry(std::string_view line) {

@@ -6,6 +6,7 @@
 #include "backend/geometry/se2.h"
 #include "frontend/log/carmen_line.h"
 #include "frontend/log/carmen_parameters.h"
+#include "frontend/log/observation.h"
 
 namespace loopgrid {
 
@@ -31,9 +32,9 @@ class CarmenInterpreter {
   /// After kScan and kOtherLaser: the message.
   const CarmenLaserMessage& message() const { return message_; }
 
-  /// After kScan and kOtherLaser: the odometry of the moment. RAWLASER messages take the latest
-  /// ODOM line's; what comes before the first of these is taken to stand at the origin.
-  const SE2& T_odom_robot() const { return T_odom_robot_; }
+  /// After kScan: the message as an observation, but for the laser's mount. RAWLASER messages take
+  /// the latest ODOM line's pose; what comes before the first of these stands at the origin.
+  Observation MakeObservation() const;
 
   const CarmenParameters& parameters() const { return parameters_; }
 
@@ -51,7 +52,6 @@ class CarmenInterpreter {
   bool started_at_origin_ = false;  // scans came before any odometry
   SE2 T_origin_odom_;
   SE2 latest_odometry_;
-  SE2 T_odom_robot_;
   std::string problem_;
 };
 

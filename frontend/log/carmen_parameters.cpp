@@ -15,21 +15,6 @@ constexpr double kFullTurn = 2.0 * kPi + 1e-6;  // with room for rounding
 
 enum Laser : std::size_t { kFront, kRear, kOther };
 
-Laser LaserOf(CarmenTag tag) {
-  switch (tag) {
-    case CarmenTag::kFlaser:
-    case CarmenTag::kRobotLaser1:
-    case CarmenTag::kRawLaser1:
-      return kFront;
-    case CarmenTag::kRlaser:
-    case CarmenTag::kRobotLaser2:
-    case CarmenTag::kRawLaser2:
-      return kRear;
-    default:
-      return kOther;
-  }
-}
-
 struct Parameter {
   std::string_view name;
   Laser laser;
@@ -73,6 +58,16 @@ double UsualFieldOfView(std::size_t steps) {
 
 }  // namespace
 
+bool IsFrontLaser(CarmenTag tag) {
+  return tag == CarmenTag::kFlaser || tag == CarmenTag::kRobotLaser1 ||
+         tag == CarmenTag::kRawLaser1;
+}
+
+bool IsRearLaser(CarmenTag tag) {
+  return tag == CarmenTag::kRlaser || tag == CarmenTag::kRobotLaser2 ||
+         tag == CarmenTag::kRawLaser2;
+}
+
 CarmenParameters::CarmenParameters() { lasers_[kRear].theta = kPi; }
 
 std::string CarmenParameters::Apply(std::string_view line, bool* known) {
@@ -96,7 +91,8 @@ std::string CarmenParameters::Apply(std::string_view line, bool* known) {
 }
 
 const CarmenLaserParameters& CarmenParameters::Of(CarmenTag tag) const {
-  return lasers_[LaserOf(tag)];
+  if (IsFrontLaser(tag)) return lasers_[kFront];
+  return lasers_[IsRearLaser(tag) ? kRear : kOther];
 }
 
 BeamAngles UsualBeamAngles(std::size_t count) {

@@ -23,6 +23,12 @@ struct CarmenLaserParameters {
   SE2 T_robot_laser() const { return SE2(x, y, theta); }
 };
 
+/// Whether a message is of the front laser: FLASER, ROBOTLASER1, RAWLASER1.
+bool IsFrontLaser(CarmenTag tag);
+
+/// Whether a message is of the rear laser: RLASER, ROBOTLASER2, RAWLASER2.
+bool IsRearLaser(CarmenTag tag);
+
 /// The parameters of a CARMEN log as far as they concern its lasers. They hold from their line on.
 class CarmenParameters {
  public:
@@ -32,8 +38,8 @@ class CarmenParameters {
   /// or an empty string.
   std::string Apply(std::string_view line, bool* known);
 
-  /// FLASER, ROBOTLASER1 and RAWLASER1 are the front laser, RLASER, ROBOTLASER2 and RAWLASER2 the
-  /// rear one, which looks backwards unless told otherwise; of others no parameters are known.
+  /// Of the front laser, of the rear one, which looks backwards unless told otherwise, or of the
+  /// others, of which no parameters are known.
   const CarmenLaserParameters& Of(CarmenTag tag) const;
 
  private:

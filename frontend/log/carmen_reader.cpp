@@ -71,14 +71,7 @@ void CarmenReader::AddScan() {
   } else {
     mount_.Add(message.T_odom_laser, message.T_odom_robot);
   }
-  const BeamAngles angles = BeamAnglesOf(message, parameters);
-  Observation& observation = pending_.emplace_back();
-  observation.timestamp = message.timestamp;
-  observation.T_odom_robot = interpreter_.T_odom_robot();
-  observation.scan.first_angle = angles.first;
-  observation.scan.angle_step = angles.step;
-  observation.scan.max_range = message.has_angles ? message.max_range : parameters.max_range;
-  observation.scan.ranges = message.ranges;
+  pending_.push_back(interpreter_.MakeObservation());
   if (mount_.decided()) SettleMounts();
 }
 
