@@ -41,7 +41,7 @@ loopgrid::LogStatistics ReadAll(const std::string& path, bool strict) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   if (bytes.find('\0') != bytes.npos) return 0;  // those are for the rawlog reader
-  const loopgrid::testing::MemoryFile file(bytes);
+  const loopgrid::test_support::MemoryFile file(bytes);
   loopgrid::LogStatistics lenient;
   try {
     lenient = ReadAll(file.path(), false);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace loopgrid::testing {
+namespace loopgrid::test_support {
 
 /// Bytes under a file name, without a disk: what a reader of files is fed by tests and fuzzers.
 class MemoryFile {
@@ -30,4 +30,4 @@ class MemoryFile {
   int descriptor_;
 };
 
-}  // namespace loopgrid::testing
+}  // namespace loopgrid::test_support
