@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace cv {
+class Mat;
+}
+
+namespace loopgrid {
+
+struct Color {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+
+  bool operator==(const Color&) const = default;
+};
+
+inline constexpr Color kBlack{0, 0, 0};
+inline constexpr Color kWhite{255, 255, 255};
+
+/// A rectangle of pixels.
+struct PixelArea {
+  int left = 0;
+  int top = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// A colour picture in memory, white to begin with; needs no display. Coordinates are pixels from
+/// the top left corner of the picture: pixel (i, j) covers [i, i + 1) x [j, j + 1).
+class Canvas {
+ public:
+  Canvas(int width, int height);
+  ~Canvas();
+  Canvas(Canvas&&) noexcept;
+  Canvas& operator=(Canvas&&) noexcept;
+
+  int width() const;
+  int height() const;
+
+  Color At(int x, int y) const;
+  void SetPixel(int x, int y, Color color);
+
+  /// An anti-aliased line, cut at the borders of `area`. Points may be any distance outside; a line
+  /// with a coordinate that is not finite is not drawn.
+  void DrawLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                Color color, int thickness);
+
+  void FillRectangle(const PixelArea& area, Color color);
+
+  /// One line of ASCII text; (x, y) is the left end of its base line, `height` that of a capital.
+  void DrawText(int x, int y, int height, const std::string& text, Color color);
+
+  static int TextWidth(int height, const std::string& text);
+
+  /// The bytes of the picture as a PNG file.
+  std::string EncodePng() const;
+
+ private:
+  std::unique_ptr<cv::Mat> image_;
+};
+
+}  // namespace loopgrid
