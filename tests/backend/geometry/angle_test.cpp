@@ -41,5 +41,12 @@ TEST(NormalizeAngle, JustBelowMinusPiDoesNotLeaveTheRange) {
   EXPECT_LT(NormalizeAngle(below), kPi);
 }
 
+TEST(NormalizeAngle, HugeAnglesStayInRange) {
+  for (double angle : {1e17, -1e17, 1e300, -1e300}) {
+    EXPECT_GE(NormalizeAngle(angle), -kPi) << angle;
+    EXPECT_LT(NormalizeAngle(angle), kPi) << angle;
+  }
+}
+
 }  // namespace
 }  // namespace loopgrid

@@ -1,0 +1,156 @@
+#include "backend/marginals.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <string>
+
+#include "backend/optimizer.h"
+#include "tests/support/graphs.h"
+
+namespace loopgrid {
+namespace {
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// Compares with the inverse of the dense Hessian without the rows and columns of one node: the
+/// definition of H_red in the tutorial.
+void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph& graph, int node,
+                                                          double tolerance = 1e-9) {
+  const auto covariances = RelativeCovariances(graph, node);
+  ASSERT_TRUE(covariances.has_value());
+  ASSERT_EQ(covariances->size(), graph.poses.size());
+  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {node});
+  for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
+    const Eigen::Matrix3d block = expected.block<3, 3>(3 * i, 3 * i);
+    EXPECT_LE(((*covariances)[Index(i)] - block).norm(), tolerance * block.norm())
+        << "node " << i << " relative to " << node;
+  }
+}
+
+TEST(RelativeCovariances, AreTheBlocksOfTheInverseOfTheReducedHessian) {
+  const PoseGraph graph = testing::RandomGraph(60, 30, 61);
+  for (int node : {0, 1, 17, 59}) {
+    ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, node);
+  }
+}
+
+TEST(RelativeCovariances, AreRightOnChainsAndStars) {
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::RandomGraph(50, 0, 62), 49);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::RandomGraph(50, 0, 62), 20);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::StarGraph(40), 40);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::StarGraph(40), 7);
+}
+
+TEST(RelativeCovariances, DoNotDependOnWhichSingleNodeIsFixed) {
+  PoseGraph graph = testing::RandomGraph(30, 10, 63);
+  const auto expected = RelativeCovariances(graph, 12);
+  graph.fixed = {22};
+  const auto covariances = RelativeCovariances(graph, 12);
+  ASSERT_TRUE(expected && covariances);
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_TRUE((*covariances)[Index(i)].isApprox((*expected)[Index(i)], 1e-8)) << i;
+  }
+}
+
+TEST(RelativeCovariances, GrowAlongAChainByTheCovarianceOfEachStep) {
+  // Straight steps without rotation uncertainty to speak of: variances of steps add up.
+  PoseGraph graph;
+  Eigen::Matrix3d information = Eigen::Vector3d(4.0, 25.0, 1e12).asDiagonal();
+  graph.poses.emplace_back();
+  for (int i = 1; i <= 10; ++i) {
+    graph.poses.emplace_back(1.0 * i, 0.0, 0.0);
+    graph.constraints.push_back({i - 1, i, SE2(1.0, 0.0, 0.0), information});
+  }
+  const auto covariances = RelativeCovariances(graph, 10);
+  ASSERT_TRUE(covariances);
+  for (int i = 0; i <= 10; ++i) {
+    EXPECT_NEAR((*covariances)[Index(i)](0, 0), (10 - i) / 4.0, 1e-6);
+    EXPECT_NEAR((*covariances)[Index(i)](1, 1), (10 - i) / 25.0, 1e-6);
+  }
+  EXPECT_TRUE(covariances->back().isZero(0.0));
+}
+
+TEST(RelativeCovariances, AreInfiniteBetweenComponents) {
+  PoseGraph graph = testing::RandomGraph(10, 5, 64);
+  const PoseGraph other = testing::RandomGraph(8, 4, 65);
+  for (Constraint constraint : other.constraints) {
+    constraint.from += 10;
+    constraint.to += 10;
+    graph.constraints.push_back(constraint);
+  }
+  graph.poses.insert(graph.poses.end(), other.poses.begin(), other.poses.end());
+  const auto covariances = RelativeCovariances(graph, 13);
+  const auto expected = RelativeCovariances(other, 3);
+  ASSERT_TRUE(covariances && expected);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(std::isinf((*covariances)[Index(i)](0, 0)) &&
+                std::isinf((*covariances)[Index(i)](2, 2)));
+    EXPECT_EQ((*covariances)[Index(i)](0, 1), 0.0);
+  }
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_TRUE((*covariances)[Index(i + 10)].isApprox((*expected)[Index(i)], 1e-10) || i == 3);
+  }
+}
+
+TEST(RelativeCovariances, OfADanglingDirectionAreRefused) {
+  PoseGraph graph = testing::RandomGraph(10, 0, 66);
+  graph.constraints[4].information.setZero();
+  graph.constraints[4].information(0, 0) = 1.0;  // a chain link that knows x alone
+  EXPECT_FALSE(RelativeCovariances(graph, 9).has_value());
+}
+
+TEST(RelativeCovariances, AreRightWhenNearlySingular) {
+  PoseGraph graph = testing::RandomGraph(20, 0, 67);
+  graph.constraints[9].information *= 1e-7;  // two halves that hardly know each other
+  // Seven of sixteen digits go to the condition of the matrix, in the reference too.
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, 19, 1e-6);
+}
+
+TEST(RelativeCovariances, OfLoneNodesAreTrivial) {
+  PoseGraph graph;
+  graph.poses.resize(1);
+  const auto covariances = RelativeCovariances(graph, 0);
+  ASSERT_TRUE(covariances);
+  EXPECT_TRUE((*covariances)[0].isZero(0.0));
+}
+
+TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {
+  PoseGraph graph = testing::RandomGraph(40, 30, 68);
+  Optimizer optimizer;
+  optimizer.Optimize(&graph);
+  const auto marginals = optimizer.ComputeMarginals();
+  ASSERT_TRUE(marginals);
+  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {0});
+  const auto cross = marginals->CrossCovariances(23);
+  EXPECT_TRUE(marginals->covariances()[0].isZero(0.0));
+  for (int i = 1; i < 40; ++i) {
+    const Eigen::Matrix3d block = expected.block<3, 3>(3 * i, 3 * i);
+    const Eigen::Matrix3d cross_block = expected.block<3, 3>(3 * i, 3 * 23);
+    EXPECT_TRUE(marginals->covariances()[Index(i)].isApprox(block, 1e-9)) << i;
+    EXPECT_TRUE(cross[Index(i)].isApprox(cross_block, 1e-9)) << i;
+  }
+}
+
+TEST(Marginals, CrossCovariancesWithAHeldNodeAreZero) {
+  PoseGraph graph = testing::RandomGraph(10, 5, 69);
+  Optimizer optimizer;
+  optimizer.Optimize(&graph);
+  for (const Eigen::Matrix3d& block : optimizer.ComputeMarginals()->CrossCovariances(0)) {
+    EXPECT_TRUE(block.isZero(0.0));
+  }
+}
+
+TEST(Marginals, RespectSeveralFixedNodes) {
+  PoseGraph graph = testing::RandomGraph(20, 10, 70);
+  graph.fixed = {3, 15};
+  const auto relative = RelativeCovariances(graph, 3);
+  ASSERT_TRUE(relative);
+  EXPECT_TRUE((*relative)[15].isZero(1e-12));  // both are where they are
+  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {3, 15});
+  const Eigen::Matrix3d block = expected.block<3, 3>(30, 30);
+  EXPECT_TRUE((*relative)[10].isApprox(block, 1e-9));
+}
+
+}  // namespace
+}  // namespace loopgrid

@@ -1,0 +1,148 @@
+#include "backend/sparse_cholesky.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "backend/normal_equations.h"
+#include "backend/selected_inverse.h"
+#include "tests/support/block_matrices.h"
+#include "tests/support/cholmod_solver.h"
+#include "tests/support/graphs.h"
+
+namespace loopgrid {
+namespace {
+
+using testing::Dense;
+
+TEST(SparseCholesky, SolvesAsTheDenseMatrixDoes) {
+  std::mt19937 random(31);
+  for (int cols = 1; cols <= 60; ++cols) {
+    const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(cols, 2 * cols, &random);
+    SparseCholesky<3> cholesky;
+    cholesky.Analyze(H);
+    ASSERT_TRUE(cholesky.Factorize(H));
+    const Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(3 * cols, 4);
+    EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10))
+        << "seed 31, " << cols << " columns";
+  }
+}
+
+TEST(SparseCholesky, DampingScalesTheDiagonal) {
+  std::mt19937 random(32);
+  const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(20, 40, &random);
+  SparseCholesky<3> cholesky;
+  cholesky.Analyze(H);
+  ASSERT_TRUE(cholesky.Factorize(H, 0.5));
+  Eigen::MatrixXd damped = Dense(H);
+  damped.diagonal() *= 1.5;
+  const Eigen::VectorXd rhs = Eigen::VectorXd::Random(60);
+  EXPECT_TRUE(cholesky.Solve(rhs).isApprox(damped.llt().solve(rhs), 1e-10));
+}
+
+TEST(SparseCholesky, ReusesItsAnalysisForNewValues) {
+  std::mt19937 random(33);
+  SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(50, 120, &random);
+  SparseCholesky<3> cholesky;
+  cholesky.Analyze(H);
+  const Eigen::VectorXd rhs = Eigen::VectorXd::Random(150);
+  for (int round = 0; round < 5; ++round) {
+    testing::Randomize(&random, &H);
+    ASSERT_TRUE(cholesky.Factorize(H));
+    EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10)) << round;
+  }
+}
+
+TEST(SparseCholesky, SaysWhenTheMatrixIsIndefinite) {
+  std::mt19937 random(34);
+  for (int col = 0; col < 30; ++col) {
+    SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(30, 60, &random);
+    SparseCholesky<3> cholesky;
+    cholesky.Analyze(H);
+    ASSERT_TRUE(cholesky.Factorize(H));
+    H.diagonal(col)(1, 1) = -1.0;
+    EXPECT_FALSE(cholesky.Factorize(H));
+    H.diagonal(col)(1, 1) = std::nan("");
+    EXPECT_FALSE(cholesky.Factorize(H));
+  }
+}
+
+TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
+  // No node held: the whole graph can move, so the Hessian has rank 3 (n - 1).
+  const PoseGraph graph = testing::RandomGraph(40, 30, 35);
+  SymmetricBlockMatrix<3> H;
+  H.Resize(40);
+  const Eigen::MatrixXd dense = testing::DenseHessian(graph);
+  for (int i = 0; i < 40; ++i) H.diagonal(i) = dense.block<3, 3>(3 * i, 3 * i);
+  for (const Constraint& constraint : graph.constraints) {
+    const auto [row, col] = std::minmax({constraint.from, constraint.to});
+    H.off_diagonal(H.FindOrAddBlock(row, col)) = dense.block<3, 3>(3 * row, 3 * col);
+  }
+  SparseCholesky<3> cholesky;
+  cholesky.Analyze(H);
+  EXPECT_FALSE(cholesky.Factorize(H));
+  EXPECT_TRUE(cholesky.Factorize(H, 1e-6));
+}
+
+TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {
+  const PoseGraph graph = testing::RandomGraph(700, 500, 36);
+  NormalEquations equations;
+  equations.SetStructure(graph);
+  equations.Linearize(graph, RobustLoss());
+  SparseCholesky<3> cholesky;
+  cholesky.Analyze(equations.hessian());
+  ASSERT_TRUE(cholesky.Factorize(equations.hessian()));
+  testing::CholmodSolver cholmod;
+  cholmod.Analyze(equations.hessian());
+  ASSERT_TRUE(cholmod.Factorize(equations.hessian()));
+  EXPECT_TRUE(
+      cholesky.Solve(equations.gradient()).isApprox(cholmod.Solve(equations.gradient()), 1e-9));
+}
+
+TEST(SparseCholesky, GivesTheSameBitsTwice) {
+  const PoseGraph graph = testing::RandomGraph(300, 300, 37);
+  Eigen::VectorXd solutions[2];
+  for (Eigen::VectorXd& solution : solutions) {
+    NormalEquations equations;
+    equations.SetStructure(graph);
+    equations.Linearize(graph, RobustLoss());
+    SparseCholesky<3> cholesky;
+    cholesky.Analyze(equations.hessian());
+    ASSERT_TRUE(cholesky.Factorize(equations.hessian()));
+    solution = cholesky.Solve(equations.gradient());
+  }
+  EXPECT_EQ(solutions[0], solutions[1]);
+}
+
+TEST(SparseCholesky, OfNothingIsNothing) {
+  SparseCholesky<3> cholesky;
+  const SymmetricBlockMatrix<3> H;
+  cholesky.Analyze(H);
+  EXPECT_TRUE(cholesky.Factorize(H));
+  EXPECT_EQ(cholesky.Solve(Eigen::VectorXd()).size(), 0);
+  EXPECT_TRUE(InverseDiagonal(cholesky).empty());
+}
+
+TEST(InverseDiagonal, AgreesWithDenseInverses) {
+  std::mt19937 random(41);
+  for (int cols = 1; cols <= 80; ++cols) {
+    for (int blocks : {0, cols / 2, 2 * cols}) {
+      const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(cols, blocks, &random);
+      SparseCholesky<3> cholesky;
+      cholesky.Analyze(H);
+      ASSERT_TRUE(cholesky.Factorize(H));
+      const Eigen::MatrixXd inverse = Dense(H).inverse();
+      const auto diagonal = InverseDiagonal(cholesky);
+      ASSERT_EQ(static_cast<int>(diagonal.size()), cols);
+      for (int i = 0; i < cols; ++i) {
+        const Eigen::Matrix3d expected = inverse.block<3, 3>(3 * i, 3 * i);
+        EXPECT_TRUE(diagonal[static_cast<std::size_t>(i)].isApprox(expected, 1e-10))
+            << "seed 41, " << cols << " columns, " << blocks << " blocks";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace loopgrid

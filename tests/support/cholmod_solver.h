@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "backend/symmetric_block_matrix.h"
+
+namespace loopgrid::testing {
+
+/// What SparseCholesky is compared with: CHOLMOD's simplicial factorisation (faster than its
+/// supernodal one on the graphs of planar SLAM), ordered by minimum degree on the blocks.
+class CholmodSolver {
+ public:
+  CholmodSolver();
+  ~CholmodSolver();
+  CholmodSolver(CholmodSolver&&) noexcept;
+  CholmodSolver& operator=(CholmodSolver&&) noexcept;
+
+  /// Finds a fill-reducing ordering of the blocks and the structure of the factor.
+  void Analyze(const SymmetricBlockMatrix<3>& H);
+
+  /// Factorises H + damping * diag(H). H must have the pattern that was analysed. False if the
+  /// matrix is not positive definite to working precision.
+  [[nodiscard]] bool Factorize(const SymmetricBlockMatrix<3>& H, double damping = 0.0);
+
+  /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
+  Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace loopgrid::testing
