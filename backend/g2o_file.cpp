@@ -28,6 +28,15 @@ bool IsPositiveSemidefinite(const Eigen::Matrix3d& matrix) {
   return values[0] >= -kIndefiniteTolerance * values[2];
 }
 
+/// A field as a message shows it: short, and on one line whatever bytes it holds.
+std::string Quoted(std::string_view field) {
+  constexpr std::size_t kLongest = 40;
+  std::string text(field.substr(0, kLongest));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + text + "'";
+}
+
 class G2oReader {
  public:
   explicit G2oReader(const std::string& path) : lines_(path) {}
@@ -64,7 +73,6 @@ class G2oReader {
   }
   Error BadField(std::string_view field, const char* expected) const {
     if (field.empty()) return lines_.ErrorHere(fmt::format("cut short, expected {}", expected));
-    constexpr std::size_t kLongest = 40;
     return lines_.ErrorHere(fmt::format("'{}' is not a finite number, expected {}",
                                         field.substr(0, kLongest), expected));
   }
@@ -91,7 +99,7 @@ G2oGraph G2oReader::Read() {
       ReadFix(&fields);
     } else {
       throw lines_.ErrorHere(
-          fmt::format("unknown tag '{}', expected VERTEX_SE2, EDGE_SE2 or FIX", tag.substr(0, 40)));
+          fmt::format("unknown tag {}, expected VERTEX_SE2, EDGE_SE2 or FIX", Quoted(tag)));
     }
   }
   if (result_.ids.empty()) {
@@ -148,8 +156,8 @@ void G2oReader::ReadFix(FieldCursor* fields) {
 
 void G2oReader::RequireEnd(FieldCursor* fields) const {
   if (fields->AtEnd()) return;
-  throw lines_.ErrorHere(fmt::format("'{}' follows the last field, expected the end of the line",
-                                     fields->Next().substr(0, 40)));
+  throw lines_.ErrorHere(fmt::format("{} follows the last field, expected the end of the line",
+                                     Quoted(fields->Next())));
 }
 
 int G2oReader::Resolve(const Mention& mention) const {

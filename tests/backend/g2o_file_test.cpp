@@ -120,7 +120,7 @@ TEST(G2oFile, RefusesWhatItDoesNotUnderstandWithFileAndLine) {
       {"FIX", "cut short, expected FIX id"},
       {"FIX 0 x", "'x' is not"},
       {"FIX 8", "vertex 8 is not in the file"},
-      {std::string("VERTEX_SE2 2 0 0 0\0", 19), "is not a finite number"},
+      {std::string("VERTEX_SE2 2 0 0 0\0", 19), "'0?' is not a finite number"},
       {std::string(2 << 20, 'x'), "too long"},
   };
   for (const auto& [line, message] : cases) {
