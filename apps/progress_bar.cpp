@@ -14,6 +14,7 @@ namespace {
 constexpr int kLongestBar = 30;
 constexpr int kShortestBar = 5;
 constexpr std::chrono::milliseconds kBetweenRedraws(100);
+constexpr double kTooEarlyToTell = 0.5;  // seconds
 
 std::string FormatTimeLeft(double seconds) {
   const auto whole = static_cast<std::int64_t>(std::ceil(seconds));
@@ -32,10 +33,13 @@ int TerminalWidth() {
 
 std::string FormatProgress(double fraction, std::int64_t scans, double seconds, int width) {
   std::string text = fmt::format("{} scans", scans);
-  if (seconds > 0.0) text += fmt::format(", {:.0f}/s", static_cast<double>(scans) / seconds);
+  const bool can_tell = seconds >= kTooEarlyToTell;
+  if (can_tell) text += fmt::format(", {:.0f}/s", static_cast<double>(scans) / seconds);
   if (fraction > 0.0) {
     fraction = std::min(fraction, 1.0);
-    text += fmt::format(", {} left", FormatTimeLeft(seconds * (1.0 - fraction) / fraction));
+    if (can_tell) {
+      text += fmt::format(", {} left", FormatTimeLeft(seconds * (1.0 - fraction) / fraction));
+    }
     text = fmt::format("{:3.0f} %  {}", std::floor(100.0 * fraction), text);
     const int length = std::min(width - static_cast<int>(text.size()) - 3, kLongestBar);
     if (length >= kShortestBar) {

@@ -11,8 +11,8 @@
 namespace loopgrid {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 Command Parse(std::vector<const char*> arguments) {
   arguments.insert(arguments.begin(), "loopgrid");
@@ -63,7 +63,7 @@ TEST(CommandLine, EvalTakesTwoFiles) {
 
 TEST(CommandLine, VersionIsOneLine) {
   const std::string text = std::get<Answer>(Parse({"--version"})).text;
-  EXPECT_THAT(text, testing::MatchesRegex("loopgrid [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(text, ::testing::MatchesRegex("loopgrid [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
 TEST(CommandLine, HelpOfTheProgramNamesItsCommands) {

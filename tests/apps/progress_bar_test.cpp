@@ -8,9 +8,9 @@
 namespace loopgrid {
 namespace {
 
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(FormatProgress, TellsShareCountRateAndTimeLeft) {
   EXPECT_EQ(FormatProgress(0.25, 500, 10.0, 79),
@@ -20,6 +20,10 @@ TEST(FormatProgress, TellsShareCountRateAndTimeLeft) {
 TEST(FormatProgress, LongTimesAreInMinutesAndHours) {
   EXPECT_THAT(FormatProgress(0.5, 1, 61.0, 200), EndsWith("1 min 01 s left"));
   EXPECT_THAT(FormatProgress(0.5, 1, 3661.0, 200), EndsWith("1 h 01 min left"));
+}
+
+TEST(FormatProgress, MakesNoPromiseInTheFirstMoment) {
+  EXPECT_EQ(FormatProgress(0.5, 10, 0.1, 20), " 50 %  10 scans");
 }
 
 TEST(FormatProgress, WithoutKnownSizeThereIsNoBarAndNoPromise) {

@@ -10,8 +10,8 @@ namespace loopgrid {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 RunReport SomeReport() {
   RunReport report;

@@ -3,12 +3,26 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace loopgrid::test_support {
+
+/// The bytes of a file.
+inline std::string ReadFile(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw std::runtime_error("cannot read " + path);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+inline void WriteFile(const std::string& path, std::string_view content) {
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  if (!stream) throw std::runtime_error("cannot write " + path);
+}
 
 /// A folder of its own for a test, gone with all that is in it at the end.
 class TemporaryDirectory {
@@ -30,9 +44,7 @@ class TemporaryDirectory {
 
   /// Writes a file and returns its path.
   std::string Write(std::string_view name, std::string_view content) const {
-    std::ofstream stream(File(name), std::ios::binary);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    if (!stream) throw std::runtime_error("cannot write " + File(name));
+    WriteFile(File(name), content);
     return File(name);
   }
 
@@ -45,15 +57,17 @@ class TemporaryDirectory {
     return names;
   }
 
+  /// Every file and folder in it at any depth, as paths from here.
+  std::set<std::string> Everything() const {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+      found.insert(std::filesystem::relative(entry.path(), path_).string());
+    }
+    return found;
+  }
+
  private:
   std::filesystem::path path_;
 };
-
-/// The bytes of a file.
-inline std::string ReadFile(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + path);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 }  // namespace loopgrid::test_support

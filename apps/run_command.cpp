@@ -1,0 +1,99 @@
+#include "apps/run_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "apps/interrupt_watch.h"
+#include "apps/output_directory.h"
+#include "apps/progress_bar.h"
+#include "apps/report.h"
+#include "apps/run_outputs.h"
+#include "apps/standard_output.h"
+#include "apps/stopwatch.h"
+#include "backend/base/error.h"
+#include "frontend/log/log_reader.h"
+#include "frontend/slam/slam.h"
+
+namespace loopgrid {
+namespace {
+
+/// The log is read twice: to map it, then to correct it. A pipe would not last.
+void RequireFile(const std::string& log) {
+  std::error_code ignored;
+  if (!std::filesystem::is_other(log, ignored)) return;
+  throw Error(ErrorCode::kInput, log + ": is a device or a pipe; a log has to be a file");
+}
+
+/// Feeds the whole log to `slam`; returns how long the recording took, seconds.
+double ReadLog(LogReader* log, Slam* slam, ProgressBar* bar) {
+  RecordingClock clock;
+  Observation observation;
+  while (log->Next(&observation)) {
+    clock.Add(observation.timestamp);
+    slam->AddScan(observation);
+    bar->Update(log->progress(), slam->scan_count());
+  }
+  return clock.seconds();
+}
+
+void RequireScans(const RunOptions& options, const LogReader& log) {
+  const LogStatistics& statistics = log.statistics();
+  if (statistics.scans > 0) return;
+  std::string message = fmt::format("{}: no laser scan in it", options.log);
+  if (!statistics.first_problems.empty()) {
+    message += fmt::format(" ({} malformed lines, the first: {})", statistics.malformed,
+                           statistics.first_problems.front());
+  }
+  throw Error(ErrorCode::kInput, message);
+}
+
+void Describe(const Slam& slam, RunReport* report) {
+  report->slam = slam.statistics();
+  report->nodes = static_cast<int>(slam.graph().poses.size());
+  report->constraints = static_cast<int>(slam.graph().constraints.size());
+  for (const ClosureRecord& closure : slam.closures()) {
+    ++report->closures[ToString(closure.outcome)];
+  }
+}
+
+}  // namespace
+
+void RunCommand(const RunOptions& options) {
+  const Stopwatch stopwatch;
+  options.Validate();
+  RequireFile(options.log);
+  LogReaderOptions log_options;
+  log_options.strict = options.strict;
+  const auto log = OpenLog(options.log, log_options);
+
+  // Found out now, not after a long run. The watch comes in between, so that there is no moment
+  // at which an interrupt would leave something behind.
+  OutputDirectory outputs(options.out, RunOutputNames());
+  const InterruptWatch watch([&outputs] { outputs.Discard(); });
+  outputs.Prepare();
+
+  RunReport report;
+  report.options = options;
+  ProgressBar bar(options.quiet);
+  Slam slam(options.slam);
+  report.data_seconds = ReadLog(log.get(), &slam, &bar);
+  RequireScans(options, *log);
+  report.log = log->statistics();
+  bar.ShowStage("optimising the graph");
+  slam.Finish();
+  Describe(slam, &report);
+
+  bar.ShowStage("drawing and writing");
+  WriteRunOutputs(options, slam, &outputs, &report);
+  report.total_seconds = stopwatch.seconds();
+  report.peak_memory_mb = PeakMemoryMb();
+  outputs.Write("report.json", FormatReportJson(report));
+  outputs.Commit();
+  bar.Clear();
+  PrintToStandardOutput(FormatSummary(report));
+}
+
+}  // namespace loopgrid

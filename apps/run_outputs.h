@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/output_directory.h"
+#include "apps/report.h"
+#include "apps/run_options.h"
+#include "frontend/slam/slam.h"
+
+namespace loopgrid {
+
+/// The names of all files that a run leaves.
+std::vector<std::string> RunOutputNames();
+
+/// Writes them, all but report.json, and notes in `report` what there is to tell about them.
+/// Throws Error.
+void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
+                     RunReport* report);
+
+}  // namespace loopgrid

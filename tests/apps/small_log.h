@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace loopgrid::test_support {
+
+/// A CARMEN log of a robot that drives a circle in a bare rectangular room: `scans` FLASER lines of
+/// 180 exact readings, ten a metre, with exact odometry. For tests that need some log, not a hard
+/// one.
+std::string SmallLog(int scans);
+
+}  // namespace loopgrid::test_support
