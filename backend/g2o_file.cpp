@@ -73,8 +73,8 @@ class G2oReader {
   }
   Error BadField(std::string_view field, const char* expected) const {
     if (field.empty()) return lines_.ErrorHere(fmt::format("cut short, expected {}", expected));
-    return lines_.ErrorHere(fmt::format("'{}' is not a finite number, expected {}",
-                                        field.substr(0, kLongest), expected));
+    return lines_.ErrorHere(
+        fmt::format("{} is not a finite number, expected {}", Quoted(field), expected));
   }
 
   LineReader lines_;

@@ -18,7 +18,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-G2oGraph ReadText(const std::string& text) { return ReadG2o(testing::MemoryFile(text).path()); }
+G2oGraph ReadText(const std::string& text) {
+  return ReadG2o(test_support::MemoryFile(text).path());
+}
 
 TEST(G2oFile, ReadsVerticesEdgesAndFixInAnyOrder) {
   const G2oGraph read = ReadText(
@@ -47,7 +49,7 @@ TEST(G2oFile, ReadsVerticesEdgesAndFixInAnyOrder) {
 
 TEST(G2oFile, RoundTripsLoseNothing) {
   G2oGraph graph;
-  graph.graph = testing::RandomGraph(60, 40, 5);
+  graph.graph = test_support::RandomGraph(60, 40, 5);
   graph.graph.poses[7] = SE2(1e-300, 123456789.123456789, -std::numbers::pi);
   graph.graph.fixed = {3, 59};
   for (int i = 0; i < 60; ++i) graph.ids.push_back(1000000007LL * (i - 30));
@@ -124,7 +126,7 @@ TEST(G2oFile, RefusesWhatItDoesNotUnderstandWithFileAndLine) {
       {std::string(2 << 20, 'x'), "too long"},
   };
   for (const auto& [line, message] : cases) {
-    const testing::MemoryFile file(vertices + line + "\n");
+    const test_support::MemoryFile file(vertices + line + "\n");
     try {
       ReadG2o(file.path());
       ADD_FAILURE() << "accepted: " << line.substr(0, 80);

@@ -20,7 +20,8 @@ void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph& graph
   const auto covariances = RelativeCovariances(graph, node);
   ASSERT_TRUE(covariances.has_value());
   ASSERT_EQ(covariances->size(), graph.poses.size());
-  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {node});
+  const Eigen::MatrixXd expected =
+      test_support::InverseWithout(test_support::DenseHessian(graph), {node});
   for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
     const Eigen::Matrix3d block = expected.block<3, 3>(3 * i, 3 * i);
     EXPECT_LE(((*covariances)[Index(i)] - block).norm(), tolerance * block.norm())
@@ -29,21 +30,21 @@ void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph& graph
 }
 
 TEST(RelativeCovariances, AreTheBlocksOfTheInverseOfTheReducedHessian) {
-  const PoseGraph graph = testing::RandomGraph(60, 30, 61);
+  const PoseGraph graph = test_support::RandomGraph(60, 30, 61);
   for (int node : {0, 1, 17, 59}) {
     ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, node);
   }
 }
 
 TEST(RelativeCovariances, AreRightOnChainsAndStars) {
-  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::RandomGraph(50, 0, 62), 49);
-  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::RandomGraph(50, 0, 62), 20);
-  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::StarGraph(40), 40);
-  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(testing::StarGraph(40), 7);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(test_support::RandomGraph(50, 0, 62), 49);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(test_support::RandomGraph(50, 0, 62), 20);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(test_support::StarGraph(40), 40);
+  ExpectRelativeCovariancesAreThoseOfTheReducedHessian(test_support::StarGraph(40), 7);
 }
 
 TEST(RelativeCovariances, DoNotDependOnWhichSingleNodeIsFixed) {
-  PoseGraph graph = testing::RandomGraph(30, 10, 63);
+  PoseGraph graph = test_support::RandomGraph(30, 10, 63);
   const auto expected = RelativeCovariances(graph, 12);
   graph.fixed = {22};
   const auto covariances = RelativeCovariances(graph, 12);
@@ -72,8 +73,8 @@ TEST(RelativeCovariances, GrowAlongAChainByTheCovarianceOfEachStep) {
 }
 
 TEST(RelativeCovariances, AreInfiniteBetweenComponents) {
-  PoseGraph graph = testing::RandomGraph(10, 5, 64);
-  const PoseGraph other = testing::RandomGraph(8, 4, 65);
+  PoseGraph graph = test_support::RandomGraph(10, 5, 64);
+  const PoseGraph other = test_support::RandomGraph(8, 4, 65);
   for (Constraint constraint : other.constraints) {
     constraint.from += 10;
     constraint.to += 10;
@@ -94,14 +95,14 @@ TEST(RelativeCovariances, AreInfiniteBetweenComponents) {
 }
 
 TEST(RelativeCovariances, OfADanglingDirectionAreRefused) {
-  PoseGraph graph = testing::RandomGraph(10, 0, 66);
+  PoseGraph graph = test_support::RandomGraph(10, 0, 66);
   graph.constraints[4].information.setZero();
   graph.constraints[4].information(0, 0) = 1.0;  // a chain link that knows x alone
   EXPECT_FALSE(RelativeCovariances(graph, 9).has_value());
 }
 
 TEST(RelativeCovariances, AreRightWhenNearlySingular) {
-  PoseGraph graph = testing::RandomGraph(20, 0, 67);
+  PoseGraph graph = test_support::RandomGraph(20, 0, 67);
   graph.constraints[9].information *= 1e-7;  // two halves that hardly know each other
   // Seven of sixteen digits go to the condition of the matrix, in the reference too.
   ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, 19, 1e-6);
@@ -116,12 +117,13 @@ TEST(RelativeCovariances, OfLoneNodesAreTrivial) {
 }
 
 TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {
-  PoseGraph graph = testing::RandomGraph(40, 30, 68);
+  PoseGraph graph = test_support::RandomGraph(40, 30, 68);
   Optimizer optimizer;
   optimizer.Optimize(&graph);
   const auto marginals = optimizer.ComputeMarginals();
   ASSERT_TRUE(marginals);
-  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {0});
+  const Eigen::MatrixXd expected =
+      test_support::InverseWithout(test_support::DenseHessian(graph), {0});
   const auto cross = marginals->CrossCovariances(23);
   EXPECT_TRUE(marginals->covariances()[0].isZero(0.0));
   for (int i = 1; i < 40; ++i) {
@@ -133,7 +135,7 @@ TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {
 }
 
 TEST(Marginals, CrossCovariancesWithAHeldNodeAreZero) {
-  PoseGraph graph = testing::RandomGraph(10, 5, 69);
+  PoseGraph graph = test_support::RandomGraph(10, 5, 69);
   Optimizer optimizer;
   optimizer.Optimize(&graph);
   for (const Eigen::Matrix3d& block : optimizer.ComputeMarginals()->CrossCovariances(0)) {
@@ -142,12 +144,13 @@ TEST(Marginals, CrossCovariancesWithAHeldNodeAreZero) {
 }
 
 TEST(Marginals, RespectSeveralFixedNodes) {
-  PoseGraph graph = testing::RandomGraph(20, 10, 70);
+  PoseGraph graph = test_support::RandomGraph(20, 10, 70);
   graph.fixed = {3, 15};
   const auto relative = RelativeCovariances(graph, 3);
   ASSERT_TRUE(relative);
   EXPECT_TRUE((*relative)[15].isZero(1e-12));  // both are where they are
-  const Eigen::MatrixXd expected = testing::InverseWithout(testing::DenseHessian(graph), {3, 15});
+  const Eigen::MatrixXd expected =
+      test_support::InverseWithout(test_support::DenseHessian(graph), {3, 15});
   const Eigen::Matrix3d block = expected.block<3, 3>(30, 30);
   EXPECT_TRUE((*relative)[10].isApprox(block, 1e-9));
 }

@@ -21,7 +21,7 @@ Eigen::MatrixXd Reduce(const Eigen::MatrixXd& H, const NormalEquations& equation
 }
 
 PoseGraph GraphWithDuplicates(unsigned seed) {
-  PoseGraph graph = testing::RandomGraph(25, 20, seed);
+  PoseGraph graph = test_support::RandomGraph(25, 20, seed);
   graph.constraints.push_back(graph.constraints[3]);
   graph.constraints.push_back(graph.constraints[20]);
   std::swap(graph.constraints.back().from, graph.constraints.back().to);
@@ -35,8 +35,8 @@ TEST(NormalEquations, HessianIsTheSumOverConstraintsWithoutTheHeldNode) {
     NormalEquations equations;
     EXPECT_TRUE(equations.SetStructure(graph));
     equations.Linearize(graph, RobustLoss());
-    EXPECT_TRUE(testing::Dense(equations.hessian())
-                    .isApprox(Reduce(testing::DenseHessian(graph), equations, 25), 1e-12));
+    EXPECT_TRUE(test_support::Dense(equations.hessian())
+                    .isApprox(Reduce(test_support::DenseHessian(graph), equations, 25), 1e-12));
   }
 }
 
@@ -65,12 +65,12 @@ TEST(NormalEquations, GradientIsTheDerivativeOfHalfF) {
 }
 
 TEST(NormalEquations, ErrorWithoutLossIsTotalChi2) {
-  const PoseGraph graph = testing::RandomGraph(30, 20, 53);
+  const PoseGraph graph = test_support::RandomGraph(30, 20, 53);
   EXPECT_DOUBLE_EQ(NormalEquations::Error(graph, {LossKind::kHuber, 0.01}), TotalChi2(graph));
 }
 
 TEST(NormalEquations, GrownGraphGivesWhatAFreshObjectGives) {
-  const PoseGraph whole = testing::RandomGraph(30, 40, 54);
+  const PoseGraph whole = test_support::RandomGraph(30, 40, 54);
   PoseGraph graph;
   NormalEquations grown;
   for (std::size_t nodes = 1; nodes <= 30; ++nodes) {
@@ -84,18 +84,19 @@ TEST(NormalEquations, GrownGraphGivesWhatAFreshObjectGives) {
     EXPECT_FALSE(grown.SetStructure(graph)) << "nothing has changed";
     grown.Linearize(graph, RobustLoss());
     EXPECT_TRUE(
-        testing::Dense(grown.hessian())
-            .isApprox(Reduce(testing::DenseHessian(graph), grown, static_cast<int>(nodes)), 1e-12));
+        test_support::Dense(grown.hessian())
+            .isApprox(Reduce(test_support::DenseHessian(graph), grown, static_cast<int>(nodes)),
+                      1e-12));
   }
 }
 
 TEST(NormalEquations, OtherChangesOfTheGraphAreNoticed) {
-  PoseGraph graph = testing::RandomGraph(12, 10, 55);
+  PoseGraph graph = test_support::RandomGraph(12, 10, 55);
   const auto expect_right = [&graph](NormalEquations* equations) {
     equations->SetStructure(graph);
     equations->Linearize(graph, RobustLoss());
-    EXPECT_TRUE(testing::Dense(equations->hessian())
-                    .isApprox(Reduce(testing::DenseHessian(graph), *equations,
+    EXPECT_TRUE(test_support::Dense(equations->hessian())
+                    .isApprox(Reduce(test_support::DenseHessian(graph), *equations,
                                      static_cast<int>(graph.poses.size())),
                               1e-12));
   };

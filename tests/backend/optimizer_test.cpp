@@ -34,7 +34,8 @@ void OptimizeDense(PoseGraph* graph, int held) {
       b.segment<3>(3 * c.from) += linear.J_from.transpose() * c.information * linear.error;
       b.segment<3>(3 * c.to) += linear.J_to.transpose() * c.information * linear.error;
     }
-    const Eigen::VectorXd dx = -testing::InverseWithout(testing::DenseHessian(*graph), {held}) * b;
+    const Eigen::VectorXd dx =
+        -test_support::InverseWithout(test_support::DenseHessian(*graph), {held}) * b;
     for (std::size_t i = 0; i < graph->poses.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(3 * i);
       graph->poses[i] = graph->poses[i].Boxplus(dx.segment<3>(row));
@@ -46,7 +47,7 @@ void OptimizeDense(PoseGraph* graph, int held) {
 
 TEST(Optimizer, FindsTheMinimumThatDenseNewtonFinds) {
   for (unsigned seed = 71; seed < 76; ++seed) {
-    PoseGraph graph = testing::RandomGraph(40, 30, seed);
+    PoseGraph graph = test_support::RandomGraph(40, 30, seed);
     PoseGraph expected = graph;
     OptimizeDense(&expected, 0);
     const OptimizerResult result = Optimizer().Optimize(&graph);
@@ -58,7 +59,7 @@ TEST(Optimizer, FindsTheMinimumThatDenseNewtonFinds) {
 }
 
 TEST(Optimizer, HoldsTheFirstNodeOrTheFixedOnes) {
-  PoseGraph graph = testing::RandomGraph(20, 10, 76);
+  PoseGraph graph = test_support::RandomGraph(20, 10, 76);
   const PoseGraph before = graph;
   Optimizer().Optimize(&graph);
   EXPECT_EQ(graph.poses[0].coordinates(), before.poses[0].coordinates());
@@ -71,7 +72,7 @@ TEST(Optimizer, HoldsTheFirstNodeOrTheFixedOnes) {
 }
 
 TEST(Optimizer, StopsAtOnceAtTheMinimum) {
-  PoseGraph graph = testing::RandomGraph(30, 20, 77);
+  PoseGraph graph = test_support::RandomGraph(30, 20, 77);
   Optimizer optimizer;
   const OptimizerResult first = optimizer.Optimize(&graph);
   const PoseGraph at_minimum = graph;
@@ -84,7 +85,7 @@ TEST(Optimizer, StopsAtOnceAtTheMinimum) {
 }
 
 TEST(Optimizer, GrowingGraphEndsWhereTheWholeOneEnds) {
-  PoseGraph whole = testing::RandomGraph(80, 60, 78);
+  PoseGraph whole = test_support::RandomGraph(80, 60, 78);
   PoseGraph graph;
   Optimizer optimizer;
   for (int node = 0; node < 80; ++node) {
@@ -107,7 +108,7 @@ TEST(Optimizer, NeverEndsHigherThanItStarted) {
   std::mt19937 random(79);
   std::uniform_real_distribution<double> place(-30.0, 30.0);
   for (unsigned seed = 100; seed < 120; ++seed) {
-    PoseGraph graph = testing::RandomGraph(25, 25, seed);
+    PoseGraph graph = test_support::RandomGraph(25, 25, seed);
     for (SE2& pose : graph.poses) {  // a start that is nonsense
       const double x = place(random);
       const double y = place(random);
@@ -122,7 +123,7 @@ TEST(Optimizer, NeverEndsHigherThanItStarted) {
 }
 
 TEST(Optimizer, StopsWhenTheIterationsAreUsedUp) {
-  PoseGraph graph = testing::RandomGraph(60, 40, 80);
+  PoseGraph graph = test_support::RandomGraph(60, 40, 80);
   OptimizerOptions options;
   options.max_iterations = 0;
   const PoseGraph before = graph;
@@ -146,14 +147,14 @@ TEST(Optimizer, LeavesGraphsWithoutAnythingToMoveAlone) {
   EXPECT_EQ(result.termination, Termination::kNothingToMove);
   EXPECT_EQ(result.final_error, 0.0);
   ExpectSamePoses(scattered, before, 0.0);
-  PoseGraph fixed = testing::RandomGraph(3, 0, 81);
+  PoseGraph fixed = test_support::RandomGraph(3, 0, 81);
   fixed.fixed = {0, 1, 2};
   EXPECT_EQ(Optimizer().Optimize(&fixed).termination, Termination::kNothingToMove);
 }
 
 TEST(Optimizer, OptimizesEachComponentOnItsOwn) {
-  PoseGraph first = testing::RandomGraph(20, 15, 82);
-  PoseGraph second = testing::RandomGraph(15, 10, 83);
+  PoseGraph first = test_support::RandomGraph(20, 15, 82);
+  PoseGraph second = test_support::RandomGraph(15, 10, 83);
   PoseGraph both = first;
   both.poses.insert(both.poses.end(), second.poses.begin(), second.poses.end());
   for (Constraint constraint : second.constraints) {
@@ -173,7 +174,7 @@ TEST(Optimizer, OptimizesEachComponentOnItsOwn) {
 }
 
 TEST(Optimizer, TwoEqualConstraintsWeighAsOneOfTwiceTheInformation) {
-  PoseGraph doubled = testing::RandomGraph(15, 10, 84);
+  PoseGraph doubled = test_support::RandomGraph(15, 10, 84);
   PoseGraph heavier = doubled;
   doubled.constraints.push_back(doubled.constraints[18]);
   heavier.constraints[18].information *= 2.0;
@@ -183,7 +184,7 @@ TEST(Optimizer, TwoEqualConstraintsWeighAsOneOfTwiceTheInformation) {
 }
 
 TEST(Optimizer, DampsWhereTheConstraintsLeaveADirectionFree) {
-  PoseGraph graph = testing::RandomGraph(10, 0, 85);
+  PoseGraph graph = test_support::RandomGraph(10, 0, 85);
   graph.constraints[4].information = Eigen::Vector3d(1.0, 0.0, 1.0).asDiagonal();
   graph.constraints[4].T_from_to = SE2(5.0, 5.0, 0.0);
   const OptimizerResult result = Optimizer().Optimize(&graph);
@@ -192,7 +193,7 @@ TEST(Optimizer, DampsWhereTheConstraintsLeaveADirectionFree) {
 }
 
 TEST(Optimizer, AConstraintThatIsWrongPullsLessWithARobustLoss) {
-  PoseGraph graph = testing::RandomGraph(50, 40, 86);
+  PoseGraph graph = test_support::RandomGraph(50, 40, 86);
   PoseGraph right = graph;
   Optimizer().Optimize(&right);
   Constraint wrong{5, 45, SE2(8.0, -8.0, 2.0), 100.0 * Eigen::Matrix3d::Identity()};
@@ -222,7 +223,7 @@ TEST(Optimizer, AConstraintThatIsWrongPullsLessWithARobustLoss) {
 TEST(Optimizer, ConstraintsNotMarkedRobustStayQuadratic) {
   OptimizerOptions options;
   options.loss = {LossKind::kGemanMcClure, 0.01};
-  PoseGraph with_loss = testing::RandomGraph(20, 20, 87);
+  PoseGraph with_loss = test_support::RandomGraph(20, 20, 87);
   PoseGraph without = with_loss;
   Optimizer(options).Optimize(&with_loss);
   Optimizer().Optimize(&without);
@@ -230,7 +231,7 @@ TEST(Optimizer, ConstraintsNotMarkedRobustStayQuadratic) {
 }
 
 TEST(Optimizer, RefusesGraphsThatAreNotValid) {
-  PoseGraph graph = testing::RandomGraph(5, 0, 88);
+  PoseGraph graph = test_support::RandomGraph(5, 0, 88);
   graph.constraints[2].to = 99;
   EXPECT_THROW(Optimizer().Optimize(&graph), Error);
 }

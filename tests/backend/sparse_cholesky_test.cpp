@@ -14,12 +14,12 @@
 namespace loopgrid {
 namespace {
 
-using testing::Dense;
+using test_support::Dense;
 
 TEST(SparseCholesky, SolvesAsTheDenseMatrixDoes) {
   std::mt19937 random(31);
   for (int cols = 1; cols <= 60; ++cols) {
-    const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(cols, 2 * cols, &random);
+    const SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(cols, 2 * cols, &random);
     SparseCholesky<3> cholesky;
     cholesky.Analyze(H);
     ASSERT_TRUE(cholesky.Factorize(H));
@@ -31,7 +31,7 @@ TEST(SparseCholesky, SolvesAsTheDenseMatrixDoes) {
 
 TEST(SparseCholesky, DampingScalesTheDiagonal) {
   std::mt19937 random(32);
-  const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(20, 40, &random);
+  const SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(20, 40, &random);
   SparseCholesky<3> cholesky;
   cholesky.Analyze(H);
   ASSERT_TRUE(cholesky.Factorize(H, 0.5));
@@ -43,12 +43,12 @@ TEST(SparseCholesky, DampingScalesTheDiagonal) {
 
 TEST(SparseCholesky, ReusesItsAnalysisForNewValues) {
   std::mt19937 random(33);
-  SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(50, 120, &random);
+  SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(50, 120, &random);
   SparseCholesky<3> cholesky;
   cholesky.Analyze(H);
   const Eigen::VectorXd rhs = Eigen::VectorXd::Random(150);
   for (int round = 0; round < 5; ++round) {
-    testing::Randomize(&random, &H);
+    test_support::Randomize(&random, &H);
     ASSERT_TRUE(cholesky.Factorize(H));
     EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10)) << round;
   }
@@ -57,7 +57,7 @@ TEST(SparseCholesky, ReusesItsAnalysisForNewValues) {
 TEST(SparseCholesky, SaysWhenTheMatrixIsIndefinite) {
   std::mt19937 random(34);
   for (int col = 0; col < 30; ++col) {
-    SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(30, 60, &random);
+    SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(30, 60, &random);
     SparseCholesky<3> cholesky;
     cholesky.Analyze(H);
     ASSERT_TRUE(cholesky.Factorize(H));
@@ -70,10 +70,10 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsIndefinite) {
 
 TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
   // No node held: the whole graph can move, so the Hessian has rank 3 (n - 1).
-  const PoseGraph graph = testing::RandomGraph(40, 30, 35);
+  const PoseGraph graph = test_support::RandomGraph(40, 30, 35);
   SymmetricBlockMatrix<3> H;
   H.Resize(40);
-  const Eigen::MatrixXd dense = testing::DenseHessian(graph);
+  const Eigen::MatrixXd dense = test_support::DenseHessian(graph);
   for (int i = 0; i < 40; ++i) H.diagonal(i) = dense.block<3, 3>(3 * i, 3 * i);
   for (const Constraint& constraint : graph.constraints) {
     const auto [row, col] = std::minmax({constraint.from, constraint.to});
@@ -86,14 +86,14 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
 }
 
 TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {
-  const PoseGraph graph = testing::RandomGraph(700, 500, 36);
+  const PoseGraph graph = test_support::RandomGraph(700, 500, 36);
   NormalEquations equations;
   equations.SetStructure(graph);
   equations.Linearize(graph, RobustLoss());
   SparseCholesky<3> cholesky;
   cholesky.Analyze(equations.hessian());
   ASSERT_TRUE(cholesky.Factorize(equations.hessian()));
-  testing::CholmodSolver cholmod;
+  test_support::CholmodSolver cholmod;
   cholmod.Analyze(equations.hessian());
   ASSERT_TRUE(cholmod.Factorize(equations.hessian()));
   EXPECT_TRUE(
@@ -101,7 +101,7 @@ TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {
 }
 
 TEST(SparseCholesky, GivesTheSameBitsTwice) {
-  const PoseGraph graph = testing::RandomGraph(300, 300, 37);
+  const PoseGraph graph = test_support::RandomGraph(300, 300, 37);
   Eigen::VectorXd solutions[2];
   for (Eigen::VectorXd& solution : solutions) {
     NormalEquations equations;
@@ -128,7 +128,7 @@ TEST(InverseDiagonal, AgreesWithDenseInverses) {
   std::mt19937 random(41);
   for (int cols = 1; cols <= 80; ++cols) {
     for (int blocks : {0, cols / 2, 2 * cols}) {
-      const SymmetricBlockMatrix<3> H = testing::RandomBlockMatrix(cols, blocks, &random);
+      const SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(cols, blocks, &random);
       SparseCholesky<3> cholesky;
       cholesky.Analyze(H);
       ASSERT_TRUE(cholesky.Factorize(H));

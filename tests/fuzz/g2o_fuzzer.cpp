@@ -11,7 +11,7 @@
 #include "tests/support/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const loopgrid::testing::MemoryFile file(
+  const loopgrid::test_support::MemoryFile file(
       std::string_view(reinterpret_cast<const char*>(data), size));
   loopgrid::G2oGraph read;
   try {
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   loopgrid::Validate(read.graph);
   const std::string text = loopgrid::FormatG2o(read.graph, read.ids);
-  const loopgrid::testing::MemoryFile written(text);
+  const loopgrid::test_support::MemoryFile written(text);
   const loopgrid::G2oGraph again = loopgrid::ReadG2o(written.path());
   if (loopgrid::FormatG2o(again.graph, again.ids) != text) std::abort();
   return 0;

@@ -7,7 +7,7 @@
 
 #include "backend/symmetric_block_matrix.h"
 
-namespace loopgrid::testing {
+namespace loopgrid::test_support {
 
 /// The whole of a block matrix, dense.
 template <int kDim>
@@ -59,4 +59,4 @@ inline SymmetricBlockMatrix<3> RandomBlockMatrix(int cols, int blocks, std::mt19
   return H;
 }
 
-}  // namespace loopgrid::testing
+}  // namespace loopgrid::test_support

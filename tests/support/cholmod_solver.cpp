@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace loopgrid::testing {
+namespace loopgrid::test_support {
 namespace {
 
 constexpr int kDim = 3;
@@ -193,4 +193,4 @@ Eigen::MatrixXd CholmodSolver::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rh
   return impl_->Solve(rhs);
 }
 
-}  // namespace loopgrid::testing
+}  // namespace loopgrid::test_support

@@ -5,7 +5,7 @@
 
 #include "backend/symmetric_block_matrix.h"
 
-namespace loopgrid::testing {
+namespace loopgrid::test_support {
 
 /// What SparseCholesky is compared with: CHOLMOD's simplicial factorisation (faster than its
 /// supernodal one on the graphs of planar SLAM), ordered by minimum degree on the blocks.
@@ -31,4 +31,4 @@ class CholmodSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace loopgrid::testing
+}  // namespace loopgrid::test_support

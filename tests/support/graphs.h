@@ -11,7 +11,7 @@
 #include "backend/constraint_error.h"
 #include "backend/pose_graph.h"
 
-namespace loopgrid::testing {
+namespace loopgrid::test_support {
 
 /// A symmetric positive definite matrix with a condition number up to about 1000.
 inline Eigen::Matrix3d RandomInformation(std::mt19937* random) {
@@ -104,4 +104,4 @@ inline Eigen::MatrixXd InverseWithout(const Eigen::MatrixXd& H, const std::vecto
   return full;
 }
 
-}  // namespace loopgrid::testing
+}  // namespace loopgrid::test_support
