@@ -1,35 +1,83 @@
 #include "apps/run_outputs.h"
 
 #include <cstddef>
+#include <cstdlib>
+#include <functional>
 
 #include "apps/closures_csv.h"
 #include "apps/stopwatch.h"
+#include "backend/g2o_file.h"
+#include "frontend/log/corrected_log.h"
 #include "frontend/log/tum_file.h"
+#include "mapping/graph_drawing.h"
 #include "mapping/map_files.h"
 #include "mapping/occupancy_grid.h"
 
 namespace loopgrid {
 namespace {
 
-OccupancyGrid DrawGrid(const Slam& slam, const std::vector<SE2>& poses, double resolution) {
-  OccupancyGridOptions options;
-  options.resolution = resolution;
-  const auto scan_at = [&slam](std::size_t index) {
+using ScanAt = std::function<MapScan(std::size_t)>;
+
+ScanAt ScansOf(const Slam& slam) {
+  return [&slam](std::size_t index) {
     const int scan = static_cast<int>(index);
     return MapScan{.origin = slam.scan_laser(scan).translation(),
                    .hits = slam.scan_hits(scan),
                    .no_returns = slam.scan_no_returns(scan)};
   };
-  return RenderMap(poses, scan_at, options);
 }
 
-void WriteMap(const OccupancyGrid& grid, OutputDirectory* outputs, RunReport* report) {
+/// Where odometry alone would have put the scans, with the first one where it is on the map.
+std::vector<SE2> OdometryPoses(const Slam& slam, const std::vector<SE2>& poses) {
+  std::vector<SE2> odometry;
+  const SE2 T_map_odom = poses.front() * slam.scan_odometry(0).Inverse();
+  for (int scan = 0; scan < slam.scan_count(); ++scan) {
+    odometry.push_back(T_map_odom * slam.scan_odometry(scan));
+  }
+  return odometry;
+}
+
+std::vector<SE2> NodesAmong(const Slam& slam, const std::vector<SE2>& scan_poses) {
+  std::vector<SE2> nodes;
+  for (int scan : slam.node_scans()) nodes.push_back(scan_poses[static_cast<std::size_t>(scan)]);
+  return nodes;
+}
+
+std::vector<GraphEdge> EdgesOf(const PoseGraph& graph) {
+  // Nodes that are no further apart than this in the order of the log met on the way, not again.
+  constexpr int kOnTheWay = 10;
+  std::vector<GraphEdge> edges;
+  for (const Constraint& constraint : graph.constraints) {
+    const bool on_the_way = std::abs(constraint.to - constraint.from) <= kOnTheWay;
+    edges.push_back(
+        {constraint.from, constraint.to, on_the_way ? EdgeKind::kSequential : EdgeKind::kClosure});
+  }
+  return edges;
+}
+
+void WriteMap(const Slam& slam, const std::vector<SE2>& poses, double resolution,
+              OutputDirectory* outputs, RunReport* report) {
+  OccupancyGridOptions options;
+  options.resolution = resolution;
+  const OccupancyGrid grid = RenderMap(poses, ScansOf(slam), options);
   const GreyImage image = DrawMap(grid);
   outputs->Write("map.png", EncodePng(image));
   outputs->Write("map.pgm", EncodePgm(image));
   outputs->Write("map.yaml", MapYaml(grid, "map.pgm"));
   report->map_width = image.width;
   report->map_height = image.height;
+}
+
+void WriteDrawings(const Slam& slam, const std::vector<SE2>& poses, OutputDirectory* outputs) {
+  const std::vector<SE2> odometry = OdometryPoses(slam, poses);
+  const std::vector<SE2> nodes_before = NodesAmong(slam, odometry);
+  const std::vector<SE2>& nodes_after = slam.graph().poses;
+  const OccupancyGrid map_before = RenderBackdrop(odometry, ScansOf(slam));
+  const OccupancyGrid map_after = RenderBackdrop(poses, ScansOf(slam));
+  const GraphState before = {.nodes = nodes_before, .backdrop = &map_before};
+  const GraphState after = {.nodes = nodes_after, .backdrop = &map_after};
+  outputs->Write("graph.png", DrawGraphBeforeAfter(before, after, EdgesOf(slam.graph())));
+  outputs->Write("uncertainty.png", DrawUncertainty(after, slam.NodeCovariances()));
 }
 
 Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses) {
@@ -40,21 +88,42 @@ Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses) {
   return trajectory;
 }
 
+std::vector<CorrectedScan> CorrectScans(const Slam& slam, const std::vector<SE2>& poses) {
+  std::vector<CorrectedScan> scans;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    scans.push_back({poses[i], slam.scan_laser(static_cast<int>(i))});
+  }
+  return scans;
+}
+
+void WriteRecords(const std::string& log, const Slam& slam, const std::vector<SE2>& poses,
+                  OutputDirectory* outputs) {
+  outputs->Write("trajectory.tum",
+                 [&](const std::string& path) { WriteTumFile(path, StampPoses(slam, poses)); });
+  outputs->Write("corrected.clf", [&](const std::string& path) {
+    WriteCorrectedLog(log, path, CorrectScans(slam, poses));
+  });
+  outputs->Write("graph.g2o", FormatG2o(slam.graph()));
+  outputs->Write("closures.csv", FormatClosuresCsv(slam.closures()));
+}
+
 }  // namespace
 
 std::vector<std::string> RunOutputNames() {
-  return {"map.png", "map.pgm", "map.yaml", "trajectory.tum", "closures.csv", "report.json"};
+  return {"map.png",   "map.pgm",      "map.yaml",  "trajectory.tum",  "corrected.clf",
+          "graph.g2o", "closures.csv", "graph.png", "uncertainty.png", "report.json"};
 }
 
 void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
                      RunReport* report) {
   const std::vector<SE2> poses = slam.ScanPoses();
   const Stopwatch drawing;
-  WriteMap(DrawGrid(slam, poses, options.resolution), outputs, report);
+  WriteMap(slam, poses, options.resolution, outputs, report);
+  WriteDrawings(slam, poses, outputs);
   report->drawing_seconds = drawing.seconds();
-  outputs->Write("trajectory.tum",
-                 [&](const std::string& path) { WriteTumFile(path, StampPoses(slam, poses)); });
-  outputs->Write("closures.csv", FormatClosuresCsv(slam.closures()));
+  const Stopwatch writing;
+  WriteRecords(options.log, slam, poses, outputs);
+  report->writing_seconds = writing.seconds();
 }
 
 }  // namespace loopgrid

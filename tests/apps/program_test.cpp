@@ -37,8 +37,9 @@ using ::testing::Not;
 using ::testing::StartsWith;
 using Names = std::set<std::string>;
 
-const Names kOutputs = {"closures.csv", "map.pgm",     "map.png",
-                        "map.yaml",     "report.json", "trajectory.tum"};
+const Names kOutputs = {"closures.csv",   "corrected.clf",  "graph.g2o", "graph.png",
+                        "map.pgm",        "map.png",        "map.yaml",  "report.json",
+                        "trajectory.tum", "uncertainty.png"};
 
 constexpr fs::perms kReadable =
     fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec;
@@ -143,6 +144,10 @@ TEST_F(ProgramTest, ReportSaysWhatTheOtherFilesShow) {
   EXPECT_EQ(report["map"]["width"], width);
   EXPECT_EQ(report["map"]["height"], height);
   EXPECT_THAT(ReadFile(out_ + "/map.yaml"), HasSubstr("map.pgm"));
+  const std::string graph = ReadFile(out_ + "/graph.g2o");
+  size_t nodes = 0;
+  for (size_t at = 0; (at = graph.find("VERTEX_SE2", at)) != std::string::npos; ++at) ++nodes;
+  EXPECT_EQ(report["nodes"], nodes);
 }
 
 TEST_F(ProgramTest, RunReplacesTheFilesOfAnEarlierRun) {
