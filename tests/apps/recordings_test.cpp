@@ -1,0 +1,108 @@
+// The program on whole real recordings, with the accuracy that is asked of it there. They are not
+// part of the project: the environment variable LOOPGRID_DATA says where they are.
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+#include "tests/apps/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace loopgrid {
+namespace {
+
+using nlohmann::json;
+using test_support::ProgramResult;
+using test_support::ReadFile;
+using test_support::RunProgram;
+using test_support::TemporaryDirectory;
+
+struct Recording {
+  const char* log;
+  int scans;
+  const char* reference;    // a trajectory; good to a few decimetres itself
+  double most_rms;          // metres from the reference, after alignment
+  const char* relations;    // empty if there are none
+  double most_translation;  // mean of the exact relations' errors, metres
+  double most_rotation;     // the same, degrees
+};
+
+std::ostream& operator<<(std::ostream& stream, const Recording& recording) {
+  return stream << recording.log;
+}
+
+const Recording kRecordings[] = {
+    {"intel.clf", 8946, "intel.reference.tum", 0.5, "intel-exact.relations", 0.035, 0.8},
+    {"killian.clf", 3873, "killian.reference.tum", 1.5, "killian.relations", 0.06, 0.8},
+    {"intel-every5.rawlog", 2726, "", 0.0, "", 0.0, 0.0},
+    {"aces.clf", 440, "aces.reference.tum", 0.5, "", 0.0, 0.0},
+    {"fhw.clf", 488, "fhw.reference.tum", 0.5, "", 0.0, 0.0},
+    {"seattle.clf", 241, "seattle.reference.tum", 0.5, "", 0.0, 0.0},
+    {"acapulco.clf", 861, "acapulco.reference.tum", 0.5, "", 0.0, 0.0},
+};
+
+class RecordingTest : public ::testing::TestWithParam<Recording> {
+ protected:
+  /// What `eval` says about the trajectory of the run.
+  json Evaluate(const std::string& reference) const {
+    const ProgramResult result =
+        RunProgram({"eval", folder_.File("out/trajectory.tum"), reference, "--json"});
+    EXPECT_EQ(result.status, 0) << result.errors;
+    return json::parse(result.output);
+  }
+
+  TemporaryDirectory folder_;
+};
+
+TEST_P(RecordingTest, IsMappedWellWithDefaults) {
+  const Recording& recording = GetParam();
+  const char* data = std::getenv("LOOPGRID_DATA");
+  if (data == nullptr) GTEST_SKIP() << "LOOPGRID_DATA is not set: no recordings to test with";
+  const std::string logs = std::string(data) + "/logs/";
+
+  const ProgramResult run = RunProgram({"run", logs + recording.log, "--out", folder_.File("out")});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json report = json::parse(ReadFile(folder_.File("out/report.json")));
+  EXPECT_EQ(report["scans"], recording.scans);
+  EXPECT_LT(report["timings"]["peak_memory_mb"], 300.0);
+
+  if (*recording.reference != '\0') {
+    const json errors = Evaluate(logs + recording.reference);
+    EXPECT_LE(errors["translation_m"]["rms"], recording.most_rms);
+  }
+  if (*recording.relations != '\0') {
+    const json exact = Evaluate(logs + recording.relations)["exact"];
+    EXPECT_LE(exact["translation_m"]["mean"], recording.most_translation);
+    EXPECT_LE(exact["rotation_deg"]["mean"], recording.most_rotation);
+  }
+}
+
+std::string NameOf(const ::testing::TestParamInfo<Recording>& info) {
+  std::string name = info.param.log;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RecordingTest, ::testing::ValuesIn(kRecordings), NameOf);
+
+TEST(DebianRecording, IsMappedWithDefaults) {
+  const std::string log =
+      "/usr/share/mrpt/datasets/2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";
+  if (!std::filesystem::exists(log)) GTEST_SKIP() << "mrpt-common is not installed";
+  const TemporaryDirectory folder;
+  const ProgramResult run = RunProgram({"run", log, "--out", folder.File("out")});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json report = json::parse(ReadFile(folder.File("out/report.json")));
+  EXPECT_EQ(report["scans"], 225);
+  EXPECT_GT(report["closures"]["accepted"], 0);
+}
+
+}  // namespace
+}  // namespace loopgrid
