@@ -106,6 +106,48 @@ LOOPGRID_INLINE bool Eliminate(double* F, std::ptrdiff_t ld, int size, int pivot
   return true;
 }
 
+// Lane is the type of a row of right-hand sides: double or Vector4.
+template <typename Lane>
+LOOPGRID_INLINE void Forward(const double* L, std::ptrdiff_t ld, int size, int pivots, Lane* x) {
+  for (int c = 0; c < pivots; ++c, L += ld) {
+    const Lane solved = x[c] * (1.0 / L[c]);
+    x[c] = solved;
+    for (int i = c + 1; i < size; ++i) x[i] -= L[i] * solved;
+  }
+}
+
+template <typename Lane>
+LOOPGRID_INLINE void Backward(const double* L, std::ptrdiff_t ld, int size, int pivots, Lane* x) {
+  // Several sums, since each addition waits for the one before; and the last row solved, which
+  // everything waits for, comes last.
+  constexpr int kSums = sizeof(Lane) == sizeof(double) ? 4 : 2;
+  L += (pivots - 1) * ld;
+  for (int c = pivots - 1; c >= 0; --c, L -= ld) {
+    Lane sums[kSums] = {};
+    int i = c + 2;
+    for (; i + kSums <= size; i += kSums) {
+      for (int k = 0; k < kSums; ++k) sums[k] += L[i + k] * x[i + k];
+    }
+    for (; i < size; ++i) sums[i % kSums] += L[i] * x[i];
+    Lane rest = x[c];
+    for (int k = 0; k < kSums; ++k) rest -= sums[k];
+    const double scale = 1.0 / L[c];
+    x[c] = c + 1 < size ? (rest - L[c + 1] * x[c + 1]) * scale : rest * scale;
+  }
+}
+
+LOOPGRID_INLINE void ForwardLanes(const double* L, int ld, int size, int pivots, double* x,
+                                  int lanes) {
+  if (lanes == 1) return Forward(L, ld, size, pivots, x);
+  Forward(L, ld, size, pivots, reinterpret_cast<Vector4*>(x));
+}
+
+LOOPGRID_INLINE void BackwardLanes(const double* L, int ld, int size, int pivots, double* x,
+                                   int lanes) {
+  if (lanes == 1) return Backward(L, ld, size, pivots, x);
+  Backward(L, ld, size, pivots, reinterpret_cast<Vector4*>(x));
+}
+
 #ifdef LOOPGRID_HAS_AVX2_VERSION
 LOOPGRID_TARGET_AVX2 void AddAvx2(double* C, int ldc, const double* A, int lda, StridedMatrix B,
                                   int rows, int cols, int depth) {
@@ -118,6 +160,14 @@ LOOPGRID_TARGET_AVX2 void SubtractAvx2(double* C, int ldc, const double* A, int 
 LOOPGRID_TARGET_AVX2 bool EliminateAvx2(double* F, int ld, int size, int pivots,
                                         const double* smallest_pivots) {
   return Eliminate(F, ld, size, pivots, smallest_pivots);
+}
+LOOPGRID_TARGET_AVX2 void ForwardAvx2(const double* L, int ld, int size, int pivots, double* x,
+                                      int lanes) {
+  ForwardLanes(L, ld, size, pivots, x, lanes);
+}
+LOOPGRID_TARGET_AVX2 void BackwardAvx2(const double* L, int ld, int size, int pivots, double* x,
+                                       int lanes) {
+  BackwardLanes(L, ld, size, pivots, x, lanes);
 }
 const bool kHasAvx2 = __builtin_cpu_supports("avx2");
 #endif
@@ -145,6 +195,20 @@ bool EliminateColumns(double* F, int ld, int size, int pivots, const double* sma
   if (kHasAvx2) return EliminateAvx2(F, ld, size, pivots, smallest_pivots);
 #endif
   return Eliminate(F, ld, size, pivots, smallest_pivots);
+}
+
+void SolveForward(const double* L, int ld, int size, int pivots, double* x, int lanes) {
+#ifdef LOOPGRID_HAS_AVX2_VERSION
+  if (kHasAvx2) return ForwardAvx2(L, ld, size, pivots, x, lanes);
+#endif
+  ForwardLanes(L, ld, size, pivots, x, lanes);
+}
+
+void SolveBackward(const double* L, int ld, int size, int pivots, double* x, int lanes) {
+#ifdef LOOPGRID_HAS_AVX2_VERSION
+  if (kHasAvx2) return BackwardAvx2(L, ld, size, pivots, x, lanes);
+#endif
+  BackwardLanes(L, ld, size, pivots, x, lanes);
 }
 
 }  // namespace loopgrid

@@ -36,4 +36,15 @@ void MultiplySubtract(double* C, int ldc, const double* A, int lda, StridedMatri
 [[nodiscard]] bool EliminateColumns(double* F, int ld, int size, int pivots,
                                     const double* smallest_pivots);
 
+/// Right-hand sides that are solved for together, side by side: x[lanes * i + k] is row i of the
+/// k-th. One, or as many as a register holds.
+inline constexpr int kMostLanes = 4;
+
+/// With the first columns L = (L11; L21) of a factor, the rows x = (x1; x2) of right-hand sides
+/// become (y; x2 - L21 y), where y = L11^-1 x1. `lanes` is 1 or kMostLanes.
+void SolveForward(const double* L, int ld, int size, int pivots, double* x, int lanes);
+
+/// The rows x = (y; z) become (L11^-T (y - L21^T z); z).
+void SolveBackward(const double* L, int ld, int size, int pivots, double* x, int lanes);
+
 }  // namespace loopgrid

@@ -21,6 +21,7 @@ void RequireAtLeastZero(const char* field, double value) {
   throw Error(ErrorCode::kUsage, fmt::format("{} is {}, expected at least 0", field, value));
 }
 
+/// Levenberg-Marquardt's lambda after a step that failed, and after one that did not.
 double Stronger(double damping) { return std::max(kFirstDamping, damping * kDampingFactor); }
 
 double Weaker(double damping) {
@@ -71,22 +72,28 @@ OptimizerResult Optimizer::Optimize(PoseGraph* graph) {
 
 void Optimizer::Iterate(PoseGraph* graph, OptimizerResult* result) {
   while (result->iterations < options_.max_iterations) {
-    switch (TakeStep(graph, result)) {
-      case Step::kNegligible:
-        result->termination = Termination::kConverged;
-        return;
-      case Step::kNotFound:
-        result->termination = Termination::kStalled;
-        return;
-      case Step::kIndefinite:
-        result->termination = Termination::kIndefinite;
-        return;
-      case Step::kTaken:
-        ++result->iterations;
-        Linearize(*graph);
+    const Step step = TakeStep(graph, result);
+    if (step == Step::kNegligible || step == Step::kNotFound || step == Step::kIndefinite) {
+      result->termination = step == Step::kNegligible ? Termination::kConverged
+                            : step == Step::kNotFound ? Termination::kStalled
+                                                      : Termination::kIndefinite;
+      return;
+    }
+    ++result->iterations;
+    Linearize(*graph);
+    // The model held all the way, so the Hessian has hardly changed: its last factor can tell
+    // whether another step is worth while.
+    if (step == Step::kTakenAsPromised &&
+        PromisedDecrease(factor_.Solve(-equations_.gradient()), 0.0) <= Negligible(*result)) {
+      result->termination = Termination::kConverged;
+      return;
     }
   }
   result->termination = Termination::kMaxIterations;
+}
+
+double Optimizer::Negligible(const OptimizerResult& result) const {
+  return std::max(options_.absolute_decrease, options_.relative_decrease * result.final_error);
 }
 
 double Optimizer::Linearize(const PoseGraph& graph) {
@@ -106,8 +113,6 @@ std::optional<Marginals> Optimizer::ComputeMarginals() {
 }
 
 Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
-  const double negligible =
-      std::max(options_.absolute_decrease, options_.relative_decrease * result->final_error);
   double& damping = result->damping;
   bool was_definite = false;
   bool was_rejected = false;
@@ -120,16 +125,20 @@ Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
     }
     was_definite = true;
     const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
-    if (PromisedDecrease(dx, damping) <= negligible) {
+    const double promised = PromisedDecrease(dx, damping);
+    if (promised <= Negligible(*result)) {
       if (was_rejected) return Step::kNotFound;
       if (was_raised || damping == 0.0) return Step::kNegligible;
       // Strong damping alone makes steps small: that is no sign of a minimum.
       damping = Weaker(damping);
       continue;
     }
+    const double before = result->final_error;
     if (TryStep(graph, dx, &result->final_error)) {
+      const bool as_promised = std::abs(before - result->final_error - promised) < 0.1 * promised;
+      const Step step = as_promised && damping == 0.0 ? Step::kTakenAsPromised : Step::kTaken;
       damping = Weaker(damping);
-      return Step::kTaken;
+      return step;
     }
     damping = Stronger(damping);
     was_rejected = was_raised = true;

@@ -65,9 +65,10 @@ class Optimizer {
   const NormalEquations& equations() const { return equations_; }
 
  private:
-  enum class Step { kTaken, kNegligible, kNotFound, kIndefinite };
+  enum class Step { kTaken, kTakenAsPromised, kNegligible, kNotFound, kIndefinite };
   void Iterate(PoseGraph* graph, OptimizerResult* result);
   Step TakeStep(PoseGraph* graph, OptimizerResult* result);
+  double Negligible(const OptimizerResult& result) const;
   double PromisedDecrease(const Eigen::VectorXd& dx, double damping) const;
   bool TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error);
   double Linearize(const PoseGraph& graph);

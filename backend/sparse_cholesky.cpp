@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "backend/frontal_kernels.h"
 
@@ -11,6 +12,10 @@ namespace {
 /// A pivot this small relative to its diagonal entry is rounding noise: the matrix is singular.
 constexpr double kSmallestPivot = 1e-13;
 
+/// When the factor has this many times the entries per block of the matrix that it had when the
+/// order was found, a new order is worth its time.
+constexpr double kWorthOrdering = 1.2;
+
 using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 using ConstColumnMajor = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
@@ -18,11 +23,19 @@ std::size_t PaddedArea(int rows, int cols) {
   return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
 }
 
+/// Entries of the factor per block of the matrix.
+double Fill(const SymbolicFactor& factor, int blocks) {
+  return static_cast<double>(factor.entries) / std::max(1, blocks);
+}
+
 }  // namespace
 
 template <int kDim>
 void SparseCholesky<kDim>::Analyze(const Matrix& H) {
-  structure_ = AnalyzeFactor(H.cols(), H.places());
+  if (!KeepOrder(H)) {
+    structure_ = AnalyzeFactor(MinimumDegreeOrder(H.cols(), H.places()), H.places());
+    ordered_fill_ = Fill(structure_, H.block_count());
+  }
   const int count = structure_.supernode_count();
   first_child_.assign(Index(count), -1);
   sibling_.assign(Index(count), -1);
@@ -34,6 +47,17 @@ void SparseCholesky<kDim>::Analyze(const Matrix& H) {
   }
   PlaceSources(H);
   PlaceMemory();
+}
+
+template <int kDim>
+bool SparseCholesky<kDim>::KeepOrder(const Matrix& H) {
+  std::vector<int> order = structure_.order;
+  if (order.empty() || H.cols() < static_cast<int>(order.size())) return false;
+  while (static_cast<int>(order.size()) < H.cols()) order.push_back(static_cast<int>(order.size()));
+  SymbolicFactor kept = AnalyzeFactor(std::move(order), H.places());
+  if (Fill(kept, H.block_count()) > kWorthOrdering * ordered_fill_) return false;
+  structure_ = std::move(kept);
+  return true;
 }
 
 template <int kDim>
@@ -93,7 +117,7 @@ void SparseCholesky<kDim>::PlaceMemory() {
   values_.assign(panel_start_.back() + kRowAlignment, 0.0);
   front_.assign(front_size + kRowAlignment, 0.0);
   updates_.assign(stack_size, 0.0);
-  solve_work_.assign(largest, 0.0);
+  solve_work_.assign(kMostLanes * largest, 0.0);
   smallest_pivots_.assign(Index(kDim) * structure_.order.size(), 0.0);
 }
 
@@ -169,59 +193,50 @@ void SparseCholesky<kDim>::AddUpdates(int s) {
 }
 
 template <int kDim>
-void SparseCholesky<kDim>::SolveForward(int s, double* x) const {
-  const int size = FrontSize(s);
-  const int pivots = kDim * structure_.columns(s);
-  const int below = size - pivots;
-  Eigen::Map<Eigen::VectorXd> own(x + kDim * structure_.first_column[Index(s)], pivots);
-  const ConstColumnMajor L(panel(s), size, pivots, Eigen::OuterStride<>(PaddedRows(size)));
-  Eigen::Map<Eigen::VectorXd> update(solve_work_.data(), below);
-  update.setZero();
-  for (int c = 0; c < pivots; ++c) {
-    own[c] /= L(c, c);
-    own.tail(pivots - c - 1) -= own[c] * L.col(c).segment(c + 1, pivots - c - 1);
-    update += own[c] * L.col(c).tail(below);
+void SparseCholesky<kDim>::SolveLanes(double* x, int lanes) const {
+  const int block = lanes * kDim;  // numbers in one block row
+  double* const work = solve_work_.data();
+  const auto own = [&](int s) { return x + block * structure_.first_column[Index(s)]; };
+  const auto rows = [&](int s) { return structure_.rows.data() + structure_.first_row[Index(s)]; };
+  for (int s = 0; s < structure_.supernode_count(); ++s) {
+    const int width = structure_.columns(s);
+    double* const below = std::copy_n(own(s), block * width, work);
+    std::fill_n(below, block * structure_.row_count(s), 0.0);
+    SolveForward(panel(s), PaddedRows(FrontSize(s)), FrontSize(s), kDim * width, work, lanes);
+    std::copy_n(work, block * width, own(s));
+    for (int k = 0; k < structure_.row_count(s); ++k) {
+      double* const row = x + block * rows(s)[k];
+      for (int i = 0; i < block; ++i) row[i] += below[block * k + i];
+    }
   }
-  const int* const rows = structure_.rows.data() + structure_.first_row[Index(s)];
-  for (int k = 0; k < structure_.row_count(s); ++k) {
-    for (int i = 0; i < kDim; ++i) x[kDim * rows[k] + i] -= update[kDim * k + i];
-  }
-}
-
-template <int kDim>
-void SparseCholesky<kDim>::SolveBackward(int s, double* x) const {
-  const int size = FrontSize(s);
-  const int pivots = kDim * structure_.columns(s);
-  const int below = size - pivots;
-  Eigen::Map<Eigen::VectorXd> own(x + kDim * structure_.first_column[Index(s)], pivots);
-  const ConstColumnMajor L(panel(s), size, pivots, Eigen::OuterStride<>(PaddedRows(size)));
-  Eigen::Map<Eigen::VectorXd> solved(solve_work_.data(), below);
-  const int* const rows = structure_.rows.data() + structure_.first_row[Index(s)];
-  for (int k = 0; k < structure_.row_count(s); ++k) {
-    for (int i = 0; i < kDim; ++i) solved[kDim * k + i] = x[kDim * rows[k] + i];
-  }
-  for (int c = pivots - 1; c >= 0; --c) {
-    const int rest = pivots - c - 1;
-    const double sum =
-        L.col(c).segment(c + 1, rest).dot(own.tail(rest)) + L.col(c).tail(below).dot(solved);
-    own[c] = (own[c] - sum) / L(c, c);
+  for (int s = structure_.supernode_count() - 1; s >= 0; --s) {
+    const int width = structure_.columns(s);
+    double* below = std::copy_n(own(s), block * width, work);
+    for (int k = 0; k < structure_.row_count(s); ++k) {
+      below = std::copy_n(x + block * rows(s)[k], block, below);
+    }
+    SolveBackward(panel(s), PaddedRows(FrontSize(s)), FrontSize(s), kDim * width, work, lanes);
+    std::copy_n(work, block * width, own(s));
   }
 }
 
 template <int kDim>
 Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
-  const int n = static_cast<int>(structure_.order.size());
-  assert(rhs.rows() == kDim * n);
+  assert(rhs.rows() == kDim * static_cast<Eigen::Index>(structure_.order.size()));
+  const int lanes = rhs.cols() == 1 ? 1 : kMostLanes;
   Eigen::MatrixXd result(rhs.rows(), rhs.cols());
-  Eigen::VectorXd x(rhs.rows());  // in elimination order
-  for (int col = 0; col < static_cast<int>(rhs.cols()); ++col) {
-    for (int k = 0; k < n; ++k) {
-      x.segment<kDim>(kDim * k) = rhs.col(col).segment<kDim>(kDim * structure_.order[Index(k)]);
+  Eigen::MatrixXd x(lanes, rhs.rows());  // in elimination order, right-hand sides side by side
+  for (Eigen::Index first = 0; first < rhs.cols(); first += lanes) {
+    const Eigen::Index count = std::min<Eigen::Index>(lanes, rhs.cols() - first);
+    x.setZero();
+    for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
+      const int from = kDim * structure_.order[Index(i / kDim)] + i % kDim;
+      for (Eigen::Index k = 0; k < count; ++k) x(k, i) = rhs(from, first + k);
     }
-    for (int s = 0; s < structure_.supernode_count(); ++s) SolveForward(s, x.data());
-    for (int s = structure_.supernode_count() - 1; s >= 0; --s) SolveBackward(s, x.data());
-    for (int k = 0; k < n; ++k) {
-      result.col(col).segment<kDim>(kDim * structure_.order[Index(k)]) = x.segment<kDim>(kDim * k);
+    SolveLanes(x.data(), lanes);
+    for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
+      const int to = kDim * structure_.order[Index(i / kDim)] + i % kDim;
+      for (Eigen::Index k = 0; k < count; ++k) result(to, first + k) = x(k, i);
     }
   }
   return result;

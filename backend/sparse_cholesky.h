@@ -19,7 +19,8 @@ class SparseCholesky {
   using Matrix = SymmetricBlockMatrix<kDim>;
   using Block = typename Matrix::Block;
 
-  /// Orders the blocks and finds the structure of the factor.
+  /// Orders the blocks and finds the structure of the factor. For a matrix that has grown since the
+  /// last call the order is kept, new columns last, while that costs little fill.
   void Analyze(const Matrix& H);
 
   /// Factorises H + damping * diag(H); H must have the pattern that was analysed. False if the
@@ -44,18 +45,19 @@ class SparseCholesky {
     bool transposed;
   };
 
+  bool KeepOrder(const Matrix& H);
   void PlaceSources(const Matrix& H);
   void PlaceMemory();
   void Assemble(const Matrix& H, double damping, int s);
   void AddUpdates(int s);
-  void SolveForward(int s, double* x) const;
-  void SolveBackward(int s, double* x) const;
+  void SolveLanes(double* x, int lanes) const;
 
   int FrontSize(int s) const { return kDim * (structure_.columns(s) + structure_.row_count(s)); }
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
   SymbolicFactor structure_;
-  std::vector<Source> sources_;            // by supernode
+  double ordered_fill_ = 0.0;    // entries of the factor per block of H when its order was found
+  std::vector<Source> sources_;  // by supernode
   std::vector<std::size_t> first_source_;  // per supernode, and the end
   std::vector<int> first_child_;           // per supernode, the last in elimination order
   std::vector<int> sibling_;               // the one before it
@@ -65,7 +67,7 @@ class SparseCholesky {
   std::vector<double> front_;
   std::vector<double> updates_;  // stack of Schur complements that wait for their parents
   std::vector<std::size_t> update_start_;
-  mutable std::vector<double> solve_work_;
+  mutable std::vector<double> solve_work_;  // the right-hand sides of one front
 };
 
 extern template class SparseCholesky<3>;

@@ -21,6 +21,14 @@ struct ColumnLists {
   }
 };
 
+std::vector<int> Inverse(const std::vector<int>& permutation) {
+  std::vector<int> inverse(permutation.size());
+  for (int k = 0; k < static_cast<int>(permutation.size()); ++k) {
+    inverse[Index(permutation[Index(k)])] = k;
+  }
+  return inverse;
+}
+
 /// The strict upper triangle, columns and rows renumbered by `position`.
 ColumnLists UpperTriangle(std::span<const BlockPlace> places, const std::vector<int>& position) {
   ColumnLists lists;
@@ -36,27 +44,6 @@ ColumnLists UpperTriangle(std::span<const BlockPlace> places, const std::vector<
     lists.rows[Index(next[Index(high)]++)] = low;
   }
   return lists;
-}
-
-std::vector<int> MinimumDegreeOrder(const ColumnLists& upper) {
-  if (upper.start.size() == 1) return {};  // CHOLMOD wants at least one column
-  cholmod_common common;
-  cholmod_start(&common);
-  common.print = 0;
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = upper.start.size() - 1;
-  matrix.nzmax = upper.rows.size();
-  matrix.p = const_cast<int*>(upper.start.data());  // CHOLMOD only reads it
-  matrix.i = const_cast<int*>(upper.rows.data());
-  matrix.stype = 1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_PATTERN;
-  matrix.packed = 1;
-  std::vector<int> order(matrix.nrow);
-  const int done = cholmod_amd(&matrix, nullptr, 0, order.data(), &common);
-  cholmod_finish(&common);
-  if (!done) throw std::bad_alloc();
-  return order;
 }
 
 /// Elimination tree (Liu 1990): the parent of column j is the first row below j in the factor.
@@ -183,26 +170,44 @@ int SymbolicFactor::PositionInFront(int s, int index) const {
   return width + static_cast<int>(std::lower_bound(begin, end, index) - begin);
 }
 
-SymbolicFactor AnalyzeFactor(int n, std::span<const BlockPlace> places) {
+std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
+  if (n == 0) return {};  // CHOLMOD wants at least one column
+  std::vector<int> order(Index(n));
+  std::iota(order.begin(), order.end(), 0);
+  ColumnLists upper = UpperTriangle(places, order);
+  cholmod_common common;
+  cholmod_start(&common);
+  common.print = 0;
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = Index(n);
+  matrix.nzmax = upper.rows.size();
+  matrix.p = upper.start.data();
+  matrix.i = upper.rows.data();
+  matrix.stype = 1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = CHOLMOD_PATTERN;
+  matrix.packed = 1;
+  const int done = cholmod_amd(&matrix, nullptr, 0, order.data(), &common);
+  cholmod_finish(&common);
+  if (!done) throw std::bad_alloc();
+  return order;
+}
+
+SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places) {
+  const int n = static_cast<int>(order.size());
   SymbolicFactor factor;
-  factor.position.resize(Index(n));
-  std::iota(factor.position.begin(), factor.position.end(), 0);
-  const auto invert_order = [&] {
-    for (int k = 0; k < n; ++k) factor.position[Index(factor.order[Index(k)])] = k;
-  };
-  factor.order = MinimumDegreeOrder(UpperTriangle(places, factor.position));
-  invert_order();
+  factor.position = Inverse(order);
   const std::vector<int> visits =
       Postorder(EliminationTree(UpperTriangle(places, factor.position)));
-  std::vector<int> postordered(Index(n));
-  for (int k = 0; k < n; ++k) postordered[Index(k)] = factor.order[Index(visits[Index(k)])];
-  factor.order = std::move(postordered);
-  invert_order();
+  factor.order.resize(Index(n));
+  for (int k = 0; k < n; ++k) factor.order[Index(k)] = order[Index(visits[Index(k)])];
+  factor.position = Inverse(factor.order);
 
   const ColumnLists upper = UpperTriangle(places, factor.position);
   const std::vector<int> tree = EliminationTree(upper);
   std::vector<int> counts(Index(n), 0);
   ForEachFactorEntry(upper, tree, [&](int col, int) { ++counts[Index(col)]; });
+  factor.entries = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   factor.first_column = FindSupernodes(tree, counts);
 
   const int supernodes = static_cast<int>(factor.first_column.size()) - 1;

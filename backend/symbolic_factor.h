@@ -15,6 +15,7 @@ namespace loopgrid {
 struct SymbolicFactor {
   std::vector<int> order;     ///< order[k]: the column of the matrix that is eliminated k-th
   std::vector<int> position;  ///< its inverse
+  std::size_t entries = 0;    ///< of the factor below the diagonal, without the supernodes' zeros
 
   std::vector<int> first_column;       ///< per supernode, and the number of columns at the end
   std::vector<int> parent;             ///< supernode that takes a supernode's update, -1 for a root
@@ -33,7 +34,12 @@ struct SymbolicFactor {
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 };
 
-/// Orders the columns of an n x n matrix by approximate minimum degree and analyses the factor.
-SymbolicFactor AnalyzeFactor(int n, std::span<const BlockPlace> places);
+/// An order of elimination for an n x n matrix that keeps the factor sparse: approximate minimum
+/// degree (Amestoy, Davis and Duff 1996).
+std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places);
+
+/// Analyses the factor for an order of elimination, which it refines (without more fill) so that
+/// supernodes are contiguous.
+SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places);
 
 }  // namespace loopgrid

@@ -47,7 +47,7 @@ std::vector<std::vector<bool>> BruteForceFactor(int n, const std::vector<BlockPl
 
 void ExpectConsistent(int n, const std::vector<BlockPlace>& places, const char* what) {
   SCOPED_TRACE(what);
-  const SymbolicFactor factor = AnalyzeFactor(n, places);
+  const SymbolicFactor factor = AnalyzeFactor(MinimumDegreeOrder(n, places), places);
   ASSERT_EQ(factor.order.size(), Index(n));
   for (int k = 0; k < n; ++k) ASSERT_EQ(factor.position[Index(factor.order[Index(k)])], k);
   ASSERT_EQ(factor.first_column.front(), 0);
@@ -105,11 +105,11 @@ TEST(AnalyzeFactor, HandlesChainsStarsAndFullMatrices) {
   ExpectConsistent(kCount, chain, "chain");
   ExpectConsistent(kCount, star, "star");
   ExpectConsistent(kCount, full, "full");
-  EXPECT_EQ(AnalyzeFactor(kCount, full).supernode_count(), 1);
+  EXPECT_EQ(AnalyzeFactor(MinimumDegreeOrder(kCount, full), full).supernode_count(), 1);
 }
 
 TEST(AnalyzeFactor, OfNothingIsNothing) {
-  const SymbolicFactor factor = AnalyzeFactor(0, {});
+  const SymbolicFactor factor = AnalyzeFactor({}, {});
   EXPECT_EQ(factor.supernode_count(), 0);
   EXPECT_TRUE(factor.order.empty());
 }
@@ -117,7 +117,7 @@ TEST(AnalyzeFactor, OfNothingIsNothing) {
 TEST(AnalyzeFactor, FillsInNothingOnAChain) {
   std::vector<BlockPlace> chain;
   for (int i = 1; i < 1000; ++i) chain.push_back({i - 1, i});
-  const SymbolicFactor factor = AnalyzeFactor(1000, chain);
+  const SymbolicFactor factor = AnalyzeFactor(MinimumDegreeOrder(1000, chain), chain);
   for (int s = 0; s < factor.supernode_count(); ++s) EXPECT_LE(factor.row_count(s), 2);
 }
 
