@@ -1,4 +1,4 @@
-// The program on whole real recordings, with the accuracy that is asked of it there. They are not
+// The program on whole recordings, with the accuracy that is asked of it there. Real ones are not
 // part of the project: the environment variable LOOPGRID_DATA says where they are.
 
 #include <gtest/gtest.h>
@@ -91,6 +91,50 @@ std::string NameOf(const ::testing::TestParamInfo<Recording>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RecordingTest, ::testing::ValuesIn(kRecordings), NameOf);
+
+class SimulatedOffice : public ::testing::Test {
+ protected:
+  /// Maps a log to a folder; returns the report.
+  json Map(const std::string& log, const std::string& out) const {
+    const ProgramResult run = RunProgram({"run", log, "--out", folder_.File(out)});
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return json::parse(ReadFile(folder_.File(out + "/report.json")));
+  }
+
+  std::string log_ = LOOPGRID_SOURCE_DIR "/logs/simulated-office.clf.gz";
+  std::string truth_ = LOOPGRID_SOURCE_DIR "/logs/simulated-office.tum";
+  TemporaryDirectory folder_;
+};
+
+TEST_F(SimulatedOffice, IsMappedToWithinACentimetre) {
+  const json report = Map(log_, "out");
+  EXPECT_EQ(report["log"]["malformed"], 0);
+  EXPECT_GT(report["closures"]["accepted"], 10);
+  const ProgramResult eval =
+      RunProgram({"eval", folder_.File("out/trajectory.tum"), truth_, "--json"});
+  ASSERT_EQ(eval.status, 0) << eval.errors;
+  const json errors = json::parse(eval.output);
+  EXPECT_EQ(errors["count"], report["scans"]);
+  EXPECT_LE(errors["translation_m"]["rms"], 0.01);
+  EXPECT_LE(errors["rotation_deg"]["rms"], 0.15);
+}
+
+TEST_F(SimulatedOffice, GivesTheSameBytesTwice) {
+  Map(log_, "a");
+  Map(log_, "b");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.File("a"))) {
+    const std::string name = entry.path().filename();
+    if (name == "report.json") continue;
+    EXPECT_TRUE(ReadFile(entry.path()) == ReadFile(folder_.File("b/" + name))) << name;
+  }
+}
+
+TEST_F(SimulatedOffice, CorrectedLogIsALogOfTheSameScans) {
+  const json report = Map(log_, "out");
+  const json again = Map(folder_.File("out/corrected.clf"), "again");
+  EXPECT_EQ(again["scans"], report["scans"]);
+  EXPECT_EQ(again["log"]["malformed"], 0);
+}
 
 TEST(DebianRecording, IsMappedWithDefaults) {
   const std::string log =
