@@ -57,6 +57,7 @@ Json ClosuresJson(const RunReport& report) {
 Json TimingsJson(const RunReport& report) {
   const SlamTimes& times = report.slam.times;
   return {{"total_s", report.total_seconds},
+          {"reading_s", report.reading_seconds},
           {"tracking_s", times.tracking},
           {"closing_s", times.closing},
           {"optimizing_s", times.optimizing},

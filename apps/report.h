@@ -21,6 +21,7 @@ struct RunReport {
   int map_width = 0;                             ///< cells
   int map_height = 0;                            ///< cells
   double data_seconds = 0.0;                     ///< how long the recording took
+  double reading_seconds = 0.0;                  ///< of the log
   double drawing_seconds = 0.0;                  ///< map and drawings
   double writing_seconds = 0.0;                  ///< the other files
   double total_seconds = 0.0;                    ///< wall time of the whole run

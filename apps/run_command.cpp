@@ -27,25 +27,31 @@ void RequireFile(const std::string& log) {
   throw Error(ErrorCode::kInput, log + ": is a device or a pipe; a log has to be a file");
 }
 
-/// Feeds the whole log to `slam`; returns how long the recording took, seconds.
-double ReadLog(LogReader* log, Slam* slam, ProgressBar* bar) {
+/// Feeds the whole log to `slam`.
+void MapLog(LogReader* log, Slam* slam, ProgressBar* bar, RunReport* report) {
   RecordingClock clock;
   Observation observation;
-  while (log->Next(&observation)) {
+  const auto read_next = [&] {
+    const Stopwatch reading;
+    const bool has_next = log->Next(&observation);
+    report->reading_seconds += reading.seconds();
+    return has_next;
+  };
+  while (read_next()) {
     clock.Add(observation.timestamp);
     slam->AddScan(observation);
     bar->Update(log->progress(), slam->scan_count());
   }
-  return clock.seconds();
+  report->data_seconds = clock.seconds();
+  report->log = log->statistics();
 }
 
-void RequireScans(const RunOptions& options, const LogReader& log) {
-  const LogStatistics& statistics = log.statistics();
-  if (statistics.scans > 0) return;
-  std::string message = fmt::format("{}: no laser scan in it", options.log);
-  if (!statistics.first_problems.empty()) {
-    message += fmt::format(" ({} malformed lines, the first: {})", statistics.malformed,
-                           statistics.first_problems.front());
+void RequireScans(const RunReport& report) {
+  if (report.log.scans > 0) return;
+  std::string message = fmt::format("{}: no laser scan in it", report.options.log);
+  if (!report.log.first_problems.empty()) {
+    message += fmt::format(" ({} malformed lines, the first: {})", report.log.malformed,
+                           report.log.first_problems.front());
   }
   throw Error(ErrorCode::kInput, message);
 }
@@ -79,9 +85,8 @@ void RunCommand(const RunOptions& options) {
   report.options = options;
   ProgressBar bar(options.quiet);
   Slam slam(options.slam);
-  report.data_seconds = ReadLog(log.get(), &slam, &bar);
-  RequireScans(options, *log);
-  report.log = log->statistics();
+  MapLog(log.get(), &slam, &bar, &report);
+  RequireScans(report);
   bar.ShowStage("optimising the graph");
   slam.Finish();
   Describe(slam, &report);
