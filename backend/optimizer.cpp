@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "backend/base/error.h"
 
@@ -15,6 +16,12 @@ namespace {
 constexpr double kFirstDamping = 1e-5;
 constexpr double kLargestDamping = 1e10;
 constexpr double kDampingFactor = 10.0;
+
+// When F fell as the model promised, to within this share, the Hessian has hardly changed, and its
+// factor serves for the next step too (a chord step of Newton's method), as long as each step
+// promises less than this share of the one before.
+constexpr double kGoodModel = 0.1;
+constexpr double kSlow = 0.1;
 
 void RequireAtLeastZero(const char* field, double value) {
   if (std::isfinite(value) && value >= 0.0) return;
@@ -71,23 +78,15 @@ OptimizerResult Optimizer::Optimize(PoseGraph* graph) {
 }
 
 void Optimizer::Iterate(PoseGraph* graph, OptimizerResult* result) {
+  factor_fits_ = false;
   while (result->iterations < options_.max_iterations) {
-    const Step step = TakeStep(graph, result);
-    if (step == Step::kNegligible || step == Step::kNotFound || step == Step::kIndefinite) {
-      result->termination = step == Step::kNegligible ? Termination::kConverged
-                            : step == Step::kNotFound ? Termination::kStalled
-                                                      : Termination::kIndefinite;
+    const std::optional<Termination> end = TakeStep(graph, result);
+    if (end) {
+      result->termination = *end;
       return;
     }
     ++result->iterations;
     Linearize(*graph);
-    // The model held all the way, so the Hessian has hardly changed: its last factor can tell
-    // whether another step is worth while.
-    if (step == Step::kTakenAsPromised &&
-        PromisedDecrease(factor_.Solve(-equations_.gradient()), 0.0) <= Negligible(*result)) {
-      result->termination = Termination::kConverged;
-      return;
-    }
   }
   result->termination = Termination::kMaxIterations;
 }
@@ -112,13 +111,13 @@ std::optional<Marginals> Optimizer::ComputeMarginals() {
   return Marginals(poses_, equations_, factor_);
 }
 
-Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
+std::optional<Termination> Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
   double& damping = result->damping;
   bool was_definite = false;
   bool was_rejected = false;
   bool was_raised = false;
   while (damping <= kLargestDamping) {
-    if (!Factorize(damping)) {
+    if (!factor_fits_ && !Factorize(damping)) {
       damping = Stronger(damping);
       was_raised = true;
       continue;
@@ -127,23 +126,27 @@ Optimizer::Step Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
     const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
     const double promised = PromisedDecrease(dx, damping);
     if (promised <= Negligible(*result)) {
-      if (was_rejected) return Step::kNotFound;
-      if (was_raised || damping == 0.0) return Step::kNegligible;
+      if (was_rejected) return Termination::kStalled;
+      if (was_raised || damping == 0.0) return Termination::kConverged;
       // Strong damping alone makes steps small: that is no sign of a minimum.
       damping = Weaker(damping);
       continue;
     }
+    const bool is_old_factor = std::exchange(factor_fits_, false);
+    if (is_old_factor && promised > kSlow * last_promised_) continue;
     const double before = result->final_error;
     if (TryStep(graph, dx, &result->final_error)) {
-      const bool as_promised = std::abs(before - result->final_error - promised) < 0.1 * promised;
-      const Step step = as_promised && damping == 0.0 ? Step::kTakenAsPromised : Step::kTaken;
+      const double kept = (before - result->final_error) / promised;
+      factor_fits_ = damping == 0.0 && std::abs(kept - 1.0) < kGoodModel;
+      last_promised_ = promised;
       damping = Weaker(damping);
-      return step;
+      return std::nullopt;
     }
+    if (is_old_factor) continue;
     damping = Stronger(damping);
     was_rejected = was_raised = true;
   }
-  return was_definite ? Step::kNotFound : Step::kIndefinite;
+  return was_definite ? Termination::kStalled : Termination::kIndefinite;
 }
 
 // With (H + lambda D) dx = -b the quadratic model falls by -(2 b^T dx + dx^T H dx).

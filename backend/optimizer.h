@@ -65,9 +65,9 @@ class Optimizer {
   const NormalEquations& equations() const { return equations_; }
 
  private:
-  enum class Step { kTaken, kTakenAsPromised, kNegligible, kNotFound, kIndefinite };
   void Iterate(PoseGraph* graph, OptimizerResult* result);
-  Step TakeStep(PoseGraph* graph, OptimizerResult* result);
+  /// Lowers F by one step; or says why there is none.
+  std::optional<Termination> TakeStep(PoseGraph* graph, OptimizerResult* result);
   double Negligible(const OptimizerResult& result) const;
   double PromisedDecrease(const Eigen::VectorXd& dx, double damping) const;
   bool TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error);
@@ -78,6 +78,8 @@ class Optimizer {
   NormalEquations equations_;
   SparseCholesky<3> factor_;
   bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
+  bool factor_fits_ = false;        // factor_ is of the last poses, and good enough for these
+  double last_promised_ = 0.0;      // decrease of F, by the last step
   std::vector<SE2> poses_;          // before the step being tried; at the end, the result
 };
 
