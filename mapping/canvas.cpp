@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -12,7 +13,7 @@ namespace {
 
 // OpenCV's drawing takes whole numbers of 1/16 pixel.
 constexpr int kSubpixelBits = 4;
-constexpr double kSubpixels = 1 << kSubpixelBits;
+constexpr std::int64_t kSubpixels = 1 << kSubpixelBits;
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kCapitalHeight = 21.0;  // of that font at scale 1, pixels
@@ -49,28 +50,25 @@ void Canvas::SetPixel(int x, int y, Color color) {
 void Canvas::DrawLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                       Color color, int thickness) {
   if (!from.allFinite() || !to.allFinite()) return;
-  cv::Mat part = (*image_)(ToRect(area));
-  // To OpenCV (0, 0) is the middle of the first pixel. Far points are cut to what its integers
-  // hold, which bends no line that a robot's map could show.
-  const auto to_point = [&area](const Eigen::Vector2d& p) {
+  // Cut to the area with a margin for the ends of thick lines. clipLine() does it in 64 bits, which
+  // line() would not.
+  const std::int64_t margin = kSubpixels * (2 + thickness);
+  const auto to_point = [&area, margin](const Eigen::Vector2d& p) {
+    // To OpenCV (0, 0) is the middle of the first pixel. Nothing sane is farther than 1e9.
     const Eigen::Vector2d inside = p - Eigen::Vector2d(area.left + 0.5, area.top + 0.5);
-    const Eigen::Vector2d scaled = (kSubpixels * inside).cwiseMax(-1e9).cwiseMin(1e9);
-    return cv::Point2l(std::lround(scaled.x()), std::lround(scaled.y()));
+    const Eigen::Vector2d scaled =
+        (static_cast<double>(kSubpixels) * inside).cwiseMax(-1e9).cwiseMin(1e9);
+    return cv::Point2l(std::lround(scaled.x()) + margin, std::lround(scaled.y()) + margin);
   };
   cv::Point2l a = to_point(from);
   cv::Point2l b = to_point(to);
-  // Cut with a margin, so that thick ends lie outside.
-  const cv::Point2l margin(16 * (2 + thickness), 16 * (2 + thickness));
-  a += margin;
-  b += margin;
-  if (!cv::clipLine(cv::Size2l(16L * area.width + 2 * margin.x, 16L * area.height + 2 * margin.y),
-                    a, b)) {
-    return;
-  }
-  a -= margin;
-  b -= margin;
-  cv::line(part, cv::Point(a), cv::Point(b), ToScalar(color), thickness, cv::LINE_AA,
-           kSubpixelBits);
+  const cv::Size2l size(kSubpixels * area.width + 2 * margin,
+                        kSubpixels * area.height + 2 * margin);
+  if (!cv::clipLine(size, a, b)) return;
+  const cv::Point2l corner(margin, margin);
+  cv::Mat part = (*image_)(ToRect(area));
+  cv::line(part, cv::Point(a - corner), cv::Point(b - corner), ToScalar(color), thickness,
+           cv::LINE_AA, kSubpixelBits);
 }
 
 void Canvas::FillRectangle(const PixelArea& area, Color color) {

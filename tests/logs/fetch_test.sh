@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# shellcheck disable=SC2317  # functions are called through check
 # Tests logs/fetch.sh without a network: a stand-in for curl serves files from a folder.
 set -euo pipefail
 fetch_script=$1
@@ -24,7 +25,6 @@ cp "$file" "$out"
 EOF
 chmod +x "$work/bin/curl"
 
-# shellcheck disable=SC2317  # functions are called through check
 failures=0
 check() {  # check WHAT CONDITION...
   local what=$1

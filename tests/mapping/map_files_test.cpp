@@ -3,20 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <cmath>
+#include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "backend/base/error.h"
+#include "tests/support/temporary_directory.h"
 
 namespace loopgrid {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 // One beam to the right along y = -0.15, from x = -0.35 to the wall at x = 0.65.
@@ -117,20 +116,24 @@ TEST(MapFiles, RefusesAnImageLargerThanProgramsTake) {
 }
 
 TEST(MapFiles, AreWrittenIntoTheFolder) {
-  const fs::path folder = fs::temp_directory_path() / "loopgrid_map_files_test";
-  fs::remove_all(folder);
-  fs::create_directory(folder);
+  const test_support::TemporaryDirectory folder;
   const OccupancyGrid grid = SmallGrid();
-  WriteMapFiles(grid, folder.string());
-  const auto content = [&folder](const char* name) {
-    std::ifstream file(folder / name, std::ios::binary);
-    return (std::ostringstream() << file.rdbuf()).str();
-  };
-  EXPECT_EQ(content("map.png"), EncodePng(DrawMap(grid)));
-  EXPECT_EQ(content("map.pgm"), EncodePgm(DrawMap(grid)));
-  EXPECT_EQ(content("map.yaml"), MapYaml(grid, "map.pgm"));
-  fs::remove_all(folder);
-  EXPECT_THROW(WriteMapFiles(grid, folder.string()), Error);
+  WriteMapFiles(grid, folder.path());
+  EXPECT_EQ(test_support::ReadFile(folder.File("map.png")), EncodePng(DrawMap(grid)));
+  EXPECT_EQ(test_support::ReadFile(folder.File("map.pgm")), EncodePgm(DrawMap(grid)));
+  EXPECT_EQ(test_support::ReadFile(folder.File("map.yaml")), MapYaml(grid, "map.pgm"));
+  EXPECT_EQ(folder.Names().size(), 3u);
+}
+
+TEST(MapFiles, AFolderThatIsNotThereIsAnOutputError) {
+  const test_support::TemporaryDirectory folder;
+  try {
+    WriteMapFiles(SmallGrid(), folder.File("missing"));
+    FAIL() << "expected an Error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kOutput);
+    EXPECT_THAT(error.what(), HasSubstr("missing/map.png: "));
+  }
 }
 
 }  // namespace
