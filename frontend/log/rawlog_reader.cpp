@@ -1,6 +1,5 @@
 #include "frontend/log/rawlog_reader.h"
 
-#include <mrpt/io/CStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
@@ -19,52 +18,13 @@
 #include "backend/base/error.h"
 #include "frontend/log/carmen_parameters.h"
 #include "frontend/log/plausible_pose.h"
+#include "frontend/log/rawlog_stream.h"
 
 namespace loopgrid {
 namespace {
 
 constexpr double kHorizontal = 0.1;  // radians of roll and pitch
 constexpr double kSamePlace = 0.01;  // metres and radians: one laser, not another
-
-/// Feeds MRPT from an InputFile. A read comes up with all its bytes or throws: MRPT itself would go
-/// on with what was in memory before.
-class InputStream : public mrpt::io::CStream {
- public:
-  explicit InputStream(InputFile file) : file_(std::move(file)) {}
-
-  size_t Read(void* buffer, size_t count) override {
-    char* bytes = static_cast<char*>(buffer);
-    try {
-      for (size_t done = 0; done < count;) {
-        const size_t more = file_.Read(bytes + done, count - done);
-        if (more == 0) {
-          throw Error(ErrorCode::kInput, file_.path() + ": ends in the middle of an object");
-        }
-        done += more;
-      }
-    } catch (const Error& error) {
-      failure_ = error.what();
-      throw;
-    }
-    position_ += count;
-    return count;
-  }
-  size_t Write(const void*, size_t) override { throw std::logic_error("not for writing"); }
-  uint64_t Seek(int64_t, TSeekOrigin) override { throw std::logic_error("not for seeking"); }
-  uint64_t getTotalBytesCount() const override { return 0; }
-  uint64_t getPosition() const override { return position_; }
-
-  InputFile& file() { return file_; }
-  const InputFile& file() const { return file_; }
-
-  /// Why the last Read() threw, empty if none did.
-  const std::string& failure() const { return failure_; }
-
- private:
-  InputFile file_;
-  uint64_t position_ = 0;
-  std::string failure_;
-};
 
 /// MRPT's messages span many lines, with the call stack; what happened stands after "Message:".
 std::string FirstMessage(const std::string& what) {
@@ -156,8 +116,8 @@ class RawlogReader::Impl {
   void Malformed(const std::string& problem);
   std::string Where() const;
 
-  InputStream stream_;
-  mrpt::serialization::CArchiveStreamBase<InputStream> archive_;
+  RawlogStream stream_;
+  mrpt::serialization::CArchiveStreamBase<RawlogStream> archive_;
   LogReaderOptions options_;
   LogStatistics statistics_;
   std::deque<Observation> pending_;
@@ -210,7 +170,7 @@ bool RawlogReader::Impl::ReadObject() {
 void RawlogReader::Impl::TakeActions(const mrpt::obs::CActionCollection& actions) {
   for (const auto& action : actions) {
     using Movement = mrpt::obs::CActionRobotMovement2D;
-    const auto* movement = dynamic_cast<const Movement*>(action.get());
+    const auto* movement = dynamic_cast<const Movement*>(action.get_ptr().get());
     if (movement == nullptr) continue;
     const bool raw = movement->estimationMethod == Movement::emOdometry;
     SE2 step;
@@ -294,12 +254,7 @@ bool LooksLikeRawlog(std::string_view start) {
     if (start.substr(1, 3) != std::string_view("\0\0\0", 3)) return false;
     name = start.substr(4);
   }
-  name = name.substr(0, first & 0x7FU);
-  constexpr std::string_view kNamespace = "mrpt::";
-  return name.size() > 1 && (name[0] == 'C' || name.substr(0, kNamespace.size()) == kNamespace) &&
-         name.find_first_not_of(
-             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:"
-             "<>,") == name.npos;
+  return IsMrptClassName(name.substr(0, first & 0x7FU));
 }
 
 }  // namespace loopgrid

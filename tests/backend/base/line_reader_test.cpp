@@ -47,14 +47,14 @@ std::vector<Line> ReadLines(std::string_view content) {
 }
 
 // What ReadLines must give, the plain way.
-std::vector<Line> SplitLines(std::string content, std::size_t max_line_length) {
+std::vector<Line> SplitLines(std::string_view content, std::size_t max_line_length) {
   std::vector<Line> lines;
   while (!content.empty()) {
     const std::size_t end = content.find('\n');
     Line line;
     line.terminated = end != content.npos;
     line.text = content.substr(0, end);
-    content.erase(0, line.terminated ? end + 1 : content.size());
+    content.remove_prefix(line.terminated ? end + 1 : content.size());
     if (!line.text.empty() && line.text.back() == '\r') line.text.pop_back();
     line.too_long = line.text.size() > max_line_length;
     if (line.too_long) line.text.clear();

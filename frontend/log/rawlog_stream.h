@@ -1,0 +1,60 @@
+#pragma once
+
+#include <mrpt/io/CStream.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "backend/base/input_file.h"
+
+namespace loopgrid {
+
+/// Whether a text can be the name of a class in a stream of MRPT objects.
+bool IsMrptClassName(std::string_view text);
+
+/// Feeds MRPT's reading of objects from an InputFile, and watches over it: MRPT trusts a file's
+/// every word, takes what was in memory for bytes that are missing, and falls over null pointers
+/// and allocations that fail. So a read here comes up with all its bytes or throws, and what passes
+/// by is followed well enough (the names of classes, and the two numbers that can do harm in the
+/// objects that rawlogs of planar lasers are made of) to refuse what MRPT would not survive.
+class RawlogStream : public mrpt::io::CStream {
+ public:
+  explicit RawlogStream(InputFile file);
+
+  /// Throws Error (kInput) if there are not so many bytes, or if they are not sound.
+  size_t Read(void* buffer, size_t count) override;
+
+  size_t Write(const void* buffer, size_t count) override;
+  uint64_t Seek(int64_t offset, TSeekOrigin origin) override;
+  uint64_t getTotalBytesCount() const override { return 0; }
+  uint64_t getPosition() const override { return position_; }
+
+  InputFile& file() { return file_; }
+  const InputFile& file() const { return file_; }
+
+  /// What the last Read() threw, for MRPT wraps it into words of its own; empty if nothing.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  void ReadAll(char* bytes, size_t count);
+  void Watch(std::string_view bytes);
+  void EnterObject(std::string_view class_name, bool old_format);
+  void CheckWord(std::uint32_t word);
+  [[noreturn]] void Fail(const std::string& problem);
+
+  InputFile file_;
+  uint64_t position_ = 0;
+  std::string failure_;
+
+  size_t name_length_ = 0;        // if what comes is the name of a class
+  bool old_header_ = false;       // with a length of 32 bits
+  bool version_follows_ = false;  // as a word, in old files
+  bool method_follows_ = false;   // how a movement was estimated, as a word
+  bool needs_pose_pdf_ = false;   // the next object has to be one
+  bool in_scan_ = false;          // before the count of a scan's readings
+  bool after_object_ = false;     // the last byte ended an object
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,76 @@
+#include "frontend/log/log_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "backend/base/error.h"
+#include "tests/frontend/log/log_testing.h"
+#include "tests/support/gzip.h"
+#include "tests/support/temporary_directory.h"
+
+namespace loopgrid {
+namespace {
+
+using test_support::MemoryFile;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using ::testing::ThrowsMessage;
+
+TEST(OpenLog, RefusesAMissingFileAndADirectory) {
+  const test_support::TemporaryDirectory directory;
+  EXPECT_THAT([&] { OpenLog(directory.File("missing.clf")); },
+              ThrowsMessage<Error>(HasSubstr("missing.clf: cannot open: No such file")));
+  const std::string path = directory.path().string();
+  EXPECT_THAT([&] { OpenLog(path); }, ThrowsMessage<Error>(path + ": is a directory"));
+}
+
+TEST(OpenLog, RefusesAnEmptyFileAlsoIfItIsGzipped) {
+  for (const std::string& content : {std::string(), test_support::Gzip("")}) {
+    const MemoryFile file(content);
+    EXPECT_THAT([&] { OpenLog(file.path()); }, ThrowsMessage<Error>(file.path() + ": is empty"));
+  }
+}
+
+TEST(OpenLog, RefusesOtherBinaryFiles) {
+  const MemoryFile file(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
+  EXPECT_THAT([&] { OpenLog(file.path()); },
+              ThrowsMessage<Error>(HasSubstr("is neither a CARMEN log nor an MRPT rawlog")));
+}
+
+TEST(OpenLog, RefusesGzipDataThatAreCorruptFromTheStart) {
+  const MemoryFile file("\x1f\x8b\x08 and then something else");
+  EXPECT_THAT([&] { OpenLog(file.path()); }, ThrowsMessage<Error>(HasSubstr("gzip data")));
+}
+
+TEST(OpenLog, AFileOfCommentsIsALogWithoutScans) {
+  const auto log = test_support::ReadWholeLogFrom("# only\n# comments\n");
+  EXPECT_TRUE(log.observations.empty());
+  EXPECT_EQ(log.statistics.lines, 2);
+  EXPECT_EQ(log.statistics.ignored, 2);
+  EXPECT_EQ(log.statistics.malformed, 0);
+}
+
+TEST(CountMalformed, KeepsTheFirstFewProblems) {
+  LogReaderOptions options;
+  options.max_reported_problems = 2;
+  LogStatistics statistics;
+  for (const char* problem : {"a:1: x", "a:2: x", "a:3: x"}) {
+    CountMalformed(problem, options, &statistics);
+  }
+  EXPECT_EQ(statistics.malformed, 3);
+  EXPECT_THAT(statistics.first_problems, ElementsAre("a:1: x", "a:2: x"));
+}
+
+TEST(CountMalformed, ThrowsInStrictMode) {
+  LogReaderOptions options;
+  options.strict = true;
+  LogStatistics statistics;
+  EXPECT_THAT([&] { CountMalformed("a:1: x", options, &statistics); },
+              ThrowsMessage<Error>("a:1: x"));
+}
+
+}  // namespace
+}  // namespace loopgrid
