@@ -26,6 +26,28 @@ namespace {
 constexpr double kHorizontal = 0.1;  // radians of roll and pitch
 constexpr double kSamePlace = 0.01;  // metres and radians: one laser, not another
 
+/// Whether MRPT can make an object of a class: it knows it, and it is not abstract.
+bool IsKnownClass(const std::string& name) {
+  const mrpt::rtti::TRuntimeClassId* known = mrpt::rtti::findRegisteredClass(name);
+  return known != nullptr && known->ptrCreateObject != nullptr;
+}
+
+/// What MRPT reads objects from.
+class Archive : public mrpt::serialization::CArchive {
+ public:
+  explicit Archive(RawlogStream* stream) : stream_(stream) {}
+
+ protected:
+  size_t read(void* bytes, size_t count) override {
+    stream_->Read(bytes, count);
+    return count;
+  }
+  size_t write(const void*, size_t) override { throw std::logic_error("only for reading"); }
+
+ private:
+  RawlogStream* stream_;
+};
+
 /// MRPT's messages span many lines, with the call stack; what happened stands after "Message:".
 std::string FirstMessage(const std::string& what) {
   constexpr std::string_view kLabel = "Message:";
@@ -88,9 +110,7 @@ std::string ConvertGeometry(const mrpt::obs::CObservation2DRangeScan& from, Lase
 class RawlogReader::Impl {
  public:
   Impl(InputFile file, const LogReaderOptions& options)
-      : stream_(std::move(file)),
-        archive_(mrpt::serialization::archiveFrom(stream_)),
-        options_(options) {}
+      : stream_(std::move(file), IsKnownClass), archive_(&stream_), options_(options) {}
 
   bool Next(Observation* observation) {
     while (pending_.empty() && ReadObject()) {
@@ -117,7 +137,7 @@ class RawlogReader::Impl {
   std::string Where() const;
 
   RawlogStream stream_;
-  mrpt::serialization::CArchiveStreamBase<RawlogStream> archive_;
+  Archive archive_;
   LogReaderOptions options_;
   LogStatistics statistics_;
   std::deque<Observation> pending_;

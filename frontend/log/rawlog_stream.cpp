@@ -1,9 +1,6 @@
 #include "frontend/log/rawlog_stream.h"
 
-#include <mrpt/rtti/CObject.h>
-
 #include <cstring>
-#include <stdexcept>
 #include <utility>
 
 #include "backend/base/error.h"
@@ -27,34 +24,29 @@ bool IsMrptClassName(std::string_view text) {
   return text.size() > 3 && begins_well && text.find_first_not_of(kAllowed) == text.npos;
 }
 
-RawlogStream::RawlogStream(InputFile file) : file_(std::move(file)) {}
-
-size_t RawlogStream::Write(const void*, size_t) { throw std::logic_error("not for writing"); }
-
-uint64_t RawlogStream::Seek(int64_t, TSeekOrigin) { throw std::logic_error("not for seeking"); }
+RawlogStream::RawlogStream(InputFile file, bool (*is_known)(const std::string&))
+    : file_(std::move(file)), is_known_(is_known) {}
 
 void RawlogStream::Fail(const std::string& problem) {
   throw Error(ErrorCode::kInput, file_.path() + ": " + problem);
 }
 
-size_t RawlogStream::Read(void* buffer, size_t count) {
+void RawlogStream::Read(void* bytes, std::size_t count) {
   try {
-    ReadAll(static_cast<char*>(buffer), count);
-    Watch({static_cast<const char*>(buffer), count});
+    ReadAll(static_cast<char*>(bytes), count);
+    Watch({static_cast<const char*>(bytes), count});
   } catch (const Error& error) {
     failure_ = error.what();
     throw;
   }
-  return count;
 }
 
-void RawlogStream::ReadAll(char* bytes, size_t count) {
-  for (size_t done = 0; done < count;) {
-    const size_t more = file_.Read(bytes + done, count - done);
+void RawlogStream::ReadAll(char* bytes, std::size_t count) {
+  for (std::size_t done = 0; done < count;) {
+    const std::size_t more = file_.Read(bytes + done, count - done);
     if (more == 0) Fail("ends in the middle of an object");
     done += more;
   }
-  position_ += count;
 }
 
 // An object begins with one byte, the length of its class's name with kNewHeader, or in files older
@@ -87,10 +79,7 @@ void RawlogStream::EnterObject(std::string_view class_name, bool old_format) {
   }
   needs_pose_pdf_ = false;
   if (name == "nullptr") return;
-  const mrpt::rtti::TRuntimeClassId* known = mrpt::rtti::findRegisteredClass(name);
-  if (known == nullptr || known->ptrCreateObject == nullptr) {
-    Fail("an object of the class " + name + ", which is not known");
-  }
+  if (!is_known_(name)) Fail("an object of the class " + name + ", which is not known");
   version_follows_ = old_format;
   method_follows_ = Contains(name, "CActionRobotMovement2D");
   if (Contains(name, "CObservation") || Contains(name, "CAction")) {

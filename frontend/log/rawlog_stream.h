@@ -1,7 +1,5 @@
 #pragma once
 
-#include <mrpt/io/CStream.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,17 +17,13 @@ bool IsMrptClassName(std::string_view text);
 /// and allocations that fail. So a read here comes up with all its bytes or throws, and what passes
 /// by is followed well enough (the names of classes, and the two numbers that can do harm in the
 /// objects that rawlogs of planar lasers are made of) to refuse what MRPT would not survive.
-class RawlogStream : public mrpt::io::CStream {
+class RawlogStream {
  public:
-  explicit RawlogStream(InputFile file);
+  /// `is_known` tells whether MRPT can make an object of a class.
+  RawlogStream(InputFile file, bool (*is_known)(const std::string& class_name));
 
   /// Throws Error (kInput) if there are not so many bytes, or if they are not sound.
-  size_t Read(void* buffer, size_t count) override;
-
-  size_t Write(const void* buffer, size_t count) override;
-  uint64_t Seek(int64_t offset, TSeekOrigin origin) override;
-  uint64_t getTotalBytesCount() const override { return 0; }
-  uint64_t getPosition() const override { return position_; }
+  void Read(void* bytes, std::size_t count);
 
   InputFile& file() { return file_; }
   const InputFile& file() const { return file_; }
@@ -38,17 +32,17 @@ class RawlogStream : public mrpt::io::CStream {
   const std::string& failure() const { return failure_; }
 
  private:
-  void ReadAll(char* bytes, size_t count);
+  void ReadAll(char* bytes, std::size_t count);
   void Watch(std::string_view bytes);
   void EnterObject(std::string_view class_name, bool old_format);
   void CheckWord(std::uint32_t word);
   [[noreturn]] void Fail(const std::string& problem);
 
   InputFile file_;
-  uint64_t position_ = 0;
+  bool (*is_known_)(const std::string&);
   std::string failure_;
 
-  size_t name_length_ = 0;        // if what comes is the name of a class
+  std::size_t name_length_ = 0;   // if what comes is the name of a class
   bool old_header_ = false;       // with a length of 32 bits
   bool version_follows_ = false;  // as a word, in old files
   bool method_follows_ = false;   // how a movement was estimated, as a word
