@@ -15,8 +15,8 @@ namespace loopgrid {
 
 struct OccupancyGridOptions {
   double resolution = 0.05;              ///< side of a cell, metres
-  double hit_log_odds = 0.85;            ///< added to a cell in which a beam of a scan ends
-  double miss_log_odds = -0.4;           ///< added to a cell that beams of a scan only cross
+  double hit_log_odds = 0.85;            ///< added where a beam of a scan ends: p = 0.7
+  double miss_log_odds = -0.4;           ///< added where beams only pass: p = 0.4
   double max_log_odds = 100.0;           ///< evidence saturates here, either way
   double no_return_range = 3.0;          ///< a beam without a return clears up to here, metres
   std::int64_t max_cells = 200'000'000;  ///< 4 bytes each; a larger map is refused
