@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "apps/command_line.h"
+#include "apps/eval_command.h"
 #include "apps/run_command.h"
 #include "apps/standard_output.h"
 #include "backend/base/error.h"
