@@ -99,6 +99,7 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
   RefinedMatch match;
   match.T_map_robot = pose;
   match.information = to_information * equations.H;
+  match.range_sigma = options.range_sigma;
   match.used = equations.used;
   match.inlier_share = equations.candidates > 0
                            ? static_cast<double>(equations.inliers) / equations.candidates

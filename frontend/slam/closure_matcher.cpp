@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
+#include "frontend/matching/match_covariance.h"
 #include "frontend/matching/thinning.h"
+#include "frontend/matching/visibility.h"
 
 namespace loopgrid {
 namespace {
@@ -34,28 +38,18 @@ void Reach(std::span<const Eigen::Vector2f> points, const SE2& center, const Sea
   *upper = (high + extra).cast<float>();
 }
 
-}  // namespace
-
-ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
-                          std::span<const Eigen::Vector2f> surroundings, const SE2& predicted,
-                          const SearchWindow& window, const ClosureMatcherOptions& options) {
-  ClosureMatch match;
-  if (map.empty() || surroundings.empty()) return match;
-  const SearchWindow clipped{std::min(window.x, options.widest), std::min(window.y, options.widest),
-                             std::min(window.rotation, 3.14)};
-  const double half_width = std::max(clipped.x, clipped.y);
-  const bool coarse = half_width >= options.coarse_from;
-  const double resolution = coarse ? options.coarse_resolution : options.fine_resolution;
-  const auto cell = static_cast<float>(resolution);
-  const float sigma = coarse ? cell : 1.4F * cell;
-
-  const std::vector<Eigen::Vector2f> points = ThinPoints(surroundings, cell);
+// The likelihood table of the part of the map that a search in `window` can touch; nothing if there
+// is none.
+std::optional<LikelihoodTable> TableFor(const LocalMap& map,
+                                        std::span<const Eigen::Vector2f> points, const SE2& center,
+                                        const SearchWindow& window, double resolution,
+                                        double sigma) {
   Eigen::Vector2f lower;
   Eigen::Vector2f upper;
-  Reach(points, predicted, clipped, &lower, &upper);
+  Reach(points, center, window, &lower, &upper);
   lower = lower.cwiseMax(map.lower());
   upper = upper.cwiseMin(map.upper());
-  if ((upper - lower).minCoeff() <= 0.0F) return match;
+  if ((upper - lower).minCoeff() <= 0.0F) return std::nullopt;
   std::vector<Eigen::Vector2f> surfaces;
   for (const Surfel& s : map.surfels()) {
     if ((s.position.array() >= lower.array()).all() &&
@@ -63,28 +57,56 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
       surfaces.push_back(s.position);
     }
   }
-  const int levels = LevelsFor(half_width, resolution);
-  const int margin = CorrelativeSearch::MarginFor(clipped, cell, levels) +
-                     static_cast<int>(std::ceil(3.0F * sigma / cell));
-  const LikelihoodTable table(surfaces, lower, upper, margin, cell, sigma, levels);
-  const double angle_step = AngleStepFor(points, resolution);
-  const CorrelativeSearch search(table, points, predicted, clipped, angle_step);
-  const SearchResult best = search.Best(0.7 * options.min_score);
-  if (!best.found) return match;
-  match.score = best.score;
-  if (best.score < options.min_score) return match;
-  if (coarse) {
+  const auto cell = static_cast<float>(resolution);
+  const int levels = LevelsFor(std::max(window.x, window.y), resolution);
+  const int margin = CorrelativeSearch::MarginFor(window, cell, levels) +
+                     static_cast<int>(std::ceil(3.0 * sigma / resolution));
+  return LikelihoodTable(surfaces, lower, upper, margin, cell, static_cast<float>(sigma), levels);
+}
+
+}  // namespace
+
+ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
+                          std::span<const Eigen::Vector2f> surroundings, const SE2& predicted,
+                          const SearchWindow& window, const ClosureMatcherOptions& options) {
+  ClosureMatch match;
+  if (map.empty() || surroundings.empty()) return match;
+  SearchWindow fine_window{std::min(window.x, options.widest), std::min(window.y, options.widest),
+                           std::min(window.rotation, 3.14)};
+  SE2 center = predicted;
+  if (std::max(fine_window.x, fine_window.y) >= options.coarse_from) {
+    const double cell = options.coarse_resolution;
+    const std::vector<Eigen::Vector2f> points = ThinPoints(surroundings, static_cast<float>(cell));
+    const auto table = TableFor(map, points, center, fine_window, cell, options.coarse_sigma);
+    if (!table) return match;
+    const double angle_step = AngleStepFor(points, cell);
+    const CorrelativeSearch search(*table, points, center, fine_window, angle_step);
+    const SearchResult best = search.Best(options.min_score);
+    match.score = best.score;
+    if (!best.found) return match;
     const SearchResult second = search.BestAwayFrom(
-        best.offset, static_cast<int>(std::ceil(options.peak_distance / resolution)),
+        best.offset, static_cast<int>(std::ceil(options.peak_distance / cell)),
         static_cast<int>(std::ceil(options.peak_angle / angle_step)), 0.7 * best.score);
     match.second_score = second.score;
+    center = best.T_map_robot;
+    fine_window = {1.5 * cell, 1.5 * cell, 1.5 * angle_step};
   }
+  const double cell = options.fine_resolution;
+  const std::vector<Eigen::Vector2f> points = ThinPoints(scan.hits, static_cast<float>(cell));
+  const auto table = TableFor(map, points, center, fine_window, cell, options.fine_sigma);
+  if (!table) return match;
+  const CorrelativeSearch search(*table, points, center, fine_window, AngleStepFor(points, cell));
+  const SearchResult best = search.Best(options.min_score);
+  match.score = best.score;
+  if (!best.found) return match;
   const RefinedMatch refined = RefineMatch(
       map, scan, best.T_map_robot, {best.T_map_robot, Eigen::Matrix3d::Zero()}, options.refiner);
   match.T_map_robot = refined.T_map_robot;
-  match.information = refined.information;
   match.inlier_share = refined.inlier_share;
   match.found = refined.inlier_share >= options.min_inlier_share;
+  if (!match.found) return match;
+  match.covariance = MatchCovariance(*table, points, refined);
+  match.denied_share = CompareVisibility(map, scan, refined.T_map_robot).denied_share();
   return match;
 }
 

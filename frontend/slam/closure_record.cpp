@@ -12,6 +12,10 @@ const char* ToString(ClosureOutcome outcome) {
       return "low-score";
     case ClosureOutcome::kAmbiguous:
       return "ambiguous";
+    case ClosureOutcome::kContradicted:
+      return "contradicted";
+    case ClosureOutcome::kUnconstrained:
+      return "unconstrained";
     case ClosureOutcome::kInconsistent:
       return "inconsistent";
     case ClosureOutcome::kRejected:

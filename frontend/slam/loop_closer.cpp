@@ -30,6 +30,12 @@ Eigen::Matrix3d ChainCovariance(double path) {
       .asDiagonal();
 }
 
+// Standard deviation of the position in its least certain direction, metres.
+double LargestSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance.topLeftCorner<2, 2>());
+  return std::sqrt(solver.eigenvalues()(1));
+}
+
 // Distance of `offset` beyond `reach` metres, in sigmas of `covariance`.
 double SigmasBeyond(const Eigen::Vector2d& offset, double reach,
                     const Eigen::Matrix2d& covariance) {
@@ -40,14 +46,6 @@ double SigmasBeyond(const Eigen::Vector2d& offset, double reach,
 }
 
 }  // namespace
-
-Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& information) {
-  Eigen::Matrix3d H = information;
-  H.diagonal() += Eigen::Vector3d(0.04, 0.04, 1.0);  // never more unsure than 5 m and 1 rad
-  Eigen::Matrix3d covariance = H.inverse();
-  covariance.diagonal() += Eigen::Vector3d(1e-4, 1e-4, 1.2e-5);
-  return 0.5 * (covariance + covariance.transpose());
-}
 
 std::vector<ClosureCandidate> LoopCloser::FindCandidates(
     const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const {
@@ -134,11 +132,16 @@ void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
   record.score = match.score;
   record.second_score = match.second_score;
   record.T_from_to = match.T_map_robot;
-  record.covariance = MatchCovariance(match.information);
+  record.covariance = match.covariance;
+  record.denied_share = match.denied_share;
   if (!match.found) {
     record.outcome = ClosureOutcome::kLowScore;
   } else if (match.second_score > options_.max_second_share * match.score) {
     record.outcome = ClosureOutcome::kAmbiguous;
+  } else if (match.denied_share > options_.max_denied_share) {
+    record.outcome = ClosureOutcome::kContradicted;
+  } else if (LargestSigma(match.covariance) > options_.max_sigma) {
+    record.outcome = ClosureOutcome::kUnconstrained;
   } else {
     record.outcome = ClosureOutcome::kPending;
     pool_.push_back(static_cast<int>(records_.size()));

@@ -22,7 +22,9 @@ struct LoopCloserOptions {
       4.0;  ///< travel that is searched with where the window is large, metres
   double surroundings_from = 1.0;  ///< windows from this half width on are large, metres
   double max_second_share = 0.92;  ///< a second peak this close to the best makes it ambiguous
-  int min_agreeing = 3;            ///< hypotheses that must agree before one is believed
+  double max_denied_share = 0.3;   ///< of the walls in view that may have vanished, 0..1
+  double max_sigma = 0.5;  ///< a match less sure than this in some direction proves nothing, metres
+  int min_agreeing = 3;    ///< hypotheses that must agree before one is believed
   double min_agreeing_path = 1.0;  ///< ... and must have been made over this much travel, metres
   double min_separation = 2.0;     ///< of the consistent set, see ConsistentSet
   int horizon_nodes = 20;          ///< hypotheses this many nodes old no longer count
@@ -62,8 +64,5 @@ class LoopCloser {
   std::vector<ClosureRecord> records_;
   std::vector<int> pool_;  // indices of recent records that are pending or accepted
 };
-
-/// Covariance of a match: what its hits say, and never less than what matching can know.
-Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& information);
 
 }  // namespace loopgrid

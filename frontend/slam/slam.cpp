@@ -9,6 +9,7 @@
 #include "backend/optimizer.h"
 #include "frontend/matching/sensor_model.h"
 #include "frontend/slam/loop_closer.h"
+#include "frontend/slam/neighbour_linker.h"
 #include "frontend/slam/nodes.h"
 #include "frontend/slam/tracker.h"
 
@@ -70,7 +71,24 @@ class Slam::Impl {
     return first ? AddFirstNode() : Track(motion);
   }
 
-  void Finish() { closer_.Finish(); }
+  void Finish() {
+    const Stopwatch stopwatch(&statistics_.times.finishing);
+    closer_.Finish();
+    const std::size_t before = graph_.constraints.size();
+    int rounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 2;
+    for (int round = 0; round < rounds; ++round) {
+      graph_.constraints.resize(before);
+      NeighbourLinkerOptions op;
+      if (getenv("ND")) op.distance = atof(getenv("ND"));
+      if (getenv("NP")) op.map_path = atof(getenv("NP"));
+      if (getenv("NI")) op.min_inlier_share = atof(getenv("NI"));
+      for (const Constraint& link : LinkNeighbours(nodes_, op)) {
+        graph_.constraints.push_back(link);
+      }
+      Optimizer optimizer(ClosureOptimizerOptions());
+      optimizer.Optimize(&graph_);
+    }
+  }
 
   PoseGraph graph_;
   Nodes nodes_;
@@ -141,8 +159,7 @@ class Slam::Impl {
   Eigen::Matrix3d SequentialCovariance(const TrackedPose& tracked) const {
     const Eigen::Matrix3d odometry = noise_.Covariance(motion_since_node_);
     if (!tracked.matched) return 4.0 * odometry;
-    const Eigen::Matrix3d match = MatchCovariance(tracked.information);
-    return (odometry.inverse() + match.inverse()).inverse();
+    return (odometry.inverse() + tracked.covariance.inverse()).inverse();
   }
 
   bool CloseLoops() {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "frontend/matching/match_covariance.h"
 #include "frontend/matching/thinning.h"
 
 namespace loopgrid {
@@ -72,7 +73,7 @@ TrackedPose Tracker::Match(const PointScan& scan, const SE2& predicted, const SE
     failed.score = found.score;
     return failed;
   }
-  return Refine(scan, found, {predicted, covariance.inverse()}, options_.min_inlier_share);
+  return Refine(scan, points, found, {predicted, covariance.inverse()}, options_.min_inlier_share);
 }
 
 TrackedPose Tracker::MatchWithoutOdometry(const PointScan& scan, const SE2& predicted) const {
@@ -88,18 +89,19 @@ TrackedPose Tracker::MatchWithoutOdometry(const PointScan& scan, const SE2& pred
   const int turned = static_cast<int>(std::ceil(0.3 / angle_step));
   const double limit = options_.lost_max_second * found.score;
   if (search.BestAwayFrom(found.offset, apart, turned, limit).found) return {};
-  return Refine(scan, found, {found.T_map_robot, Eigen::Matrix3d::Zero()},
+  return Refine(scan, points, found, {found.T_map_robot, Eigen::Matrix3d::Zero()},
                 options_.lost_min_inlier_share);
 }
 
-TrackedPose Tracker::Refine(const PointScan& scan, const SearchResult& found,
-                            const PosePrior& prior, double min_inlier_share) const {
+TrackedPose Tracker::Refine(const PointScan& scan, std::span<const Eigen::Vector2f> points,
+                            const SearchResult& found, const PosePrior& prior,
+                            double min_inlier_share) const {
   TrackedPose result;
   result.score = found.score;
   const RefinedMatch match = RefineMatch(map_, scan, found.T_map_robot, prior, options_.refiner);
   if (match.inlier_share < min_inlier_share) return result;
   result.T_map_robot = match.T_map_robot;
-  result.information = match.information;
+  result.covariance = MatchCovariance(*table_, points, match);
   result.matched = true;
   return result;
 }

@@ -29,7 +29,7 @@ struct TrackerOptions {
 /// Where a scan is in the local map.
 struct TrackedPose {
   SE2 T_map_robot;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match; zero if it failed
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the match, robot frame
   bool matched = false;
   double score = 0.0;  ///< of the correlative search, 0..1
 };
@@ -53,7 +53,8 @@ class Tracker {
   TrackedPose Match(const PointScan& scan, const SE2& predicted, const SE2& motion) const;
   /// Odometry can be plainly wrong (a slip, a gap in the log): looks all around.
   TrackedPose MatchWithoutOdometry(const PointScan& scan, const SE2& predicted) const;
-  TrackedPose Refine(const PointScan& scan, const SearchResult& found, const PosePrior& prior,
+  TrackedPose Refine(const PointScan& scan, std::span<const Eigen::Vector2f> points,
+                     const SearchResult& found, const PosePrior& prior,
                      double min_inlier_share) const;
 
   TrackerOptions options_;

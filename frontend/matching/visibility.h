@@ -1,0 +1,22 @@
+#pragma once
+
+#include "backend/geometry/se2.h"
+#include "frontend/matching/local_map.h"
+#include "frontend/matching/point_scan.h"
+
+namespace loopgrid {
+
+/// What a placed scan says of the surfaces of a map.
+struct Visibility {
+  int confirmed = 0;  ///< surfels where a beam ended
+  int denied = 0;     ///< surfels that a beam went through
+
+  /// Share of the surfels in view that the scan denies, 0..1; 1 if none is in view.
+  double denied_share() const;
+};
+
+/// Compares each surfel that faces the laser with the beams that go its way. A wrong place can put
+/// every hit on some wall and still look through others; this is where that shows.
+Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot);
+
+}  // namespace loopgrid
