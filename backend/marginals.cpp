@@ -1,5 +1,6 @@
 #include "backend/marginals.h"
 
+#include <Eigen/LU>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -73,6 +74,19 @@ std::optional<std::vector<Eigen::Matrix3d>> RelativeCovariances(const PoseGraph&
   factor.Analyze(equations.hessian());
   if (!factor.Factorize(equations.hessian())) return std::nullopt;
   return Marginals(graph.poses, equations, factor).RelativeTo(node);
+}
+
+void ExtendRelativeCovariances(const PoseGraph& graph, const Constraint& link,
+                               std::vector<Eigen::Matrix3d>* covariances) {
+  // The link's error is independent of all others and moves every node alike, seen from the new
+  // one.
+  const SE2& last = graph.poses[Index(link.to)];
+  const Eigen::Matrix3d error = link.information.inverse();
+  for (std::size_t i = 0; i < covariances->size(); ++i) {
+    const Eigen::Matrix3d A = (graph.poses[i].Inverse() * last).Adjoint();
+    (*covariances)[i] += A * error * A.transpose();
+  }
+  covariances->push_back(Eigen::Matrix3d::Zero());
 }
 
 }  // namespace loopgrid

@@ -46,4 +46,11 @@ class Marginals {
 std::optional<std::vector<Eigen::Matrix3d>> RelativeCovariances(const PoseGraph& graph, int node,
                                                                 const RobustLoss& loss = {});
 
+/// Carries covariances relative to the last node but one (as of Marginals::RelativeTo) over to the
+/// last node, which only `link` joins to the graph, from the node before it: what a new
+/// factorisation would give, without one. `covariances` has an entry a node but the last; it gets
+/// that one too.
+void ExtendRelativeCovariances(const PoseGraph& graph, const Constraint& link,
+                               std::vector<Eigen::Matrix3d>* covariances);
+
 }  // namespace loopgrid

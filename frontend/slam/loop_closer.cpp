@@ -10,15 +10,9 @@
 namespace loopgrid {
 namespace {
 
-// Adjoint of T: how a small motion in the frame of b looks in the frame of a, T = T_a_b.
-Eigen::Matrix3d Adjoint(const SE2& T) {
-  Eigen::Matrix3d result;
-  result << T.cos(), -T.sin(), T.y(), T.sin(), T.cos(), -T.x(), 0.0, 0.0, 1.0;
-  return result;
-}
-
+// A covariance of motions in the frame of b, as motions in the frame of a.
 Eigen::Matrix3d Transported(const SE2& T_a_b, const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d A = Adjoint(T_a_b);
+  const Eigen::Matrix3d A = T_a_b.Adjoint();
   return A * covariance * A.transpose();
 }
 
@@ -50,8 +44,8 @@ double SigmasBeyond(const Eigen::Vector2d& offset, double reach,
 std::vector<ClosureCandidate> LoopCloser::FindCandidates(
     const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const {
   const int newest = nodes.size() - 1;
-  int last_old = newest - options_.recent_nodes;
-  while (last_old >= 0 && nodes.PathLength(last_old, newest) < options_.recent_path) --last_old;
+  const int last_old = std::min(newest - options_.recent_nodes,
+                                nodes.Around(newest, options_.recent_path).first - 1);
 
   std::vector<ClosureCandidate> places;
   int last_hit = -1000;
@@ -99,9 +93,7 @@ std::vector<ClosureCandidate> LoopCloser::FindCandidates(
 
 std::vector<Eigen::Vector2f> LoopCloser::Surroundings(const Nodes& nodes, double path) const {
   const int newest = nodes.size() - 1;
-  int first = newest;
-  while (first > 0 && nodes.PathLength(first - 1, newest) <= path) --first;
-  const LocalMap map = nodes.MapOf(first, newest, newest, options_.map_radius);
+  const LocalMap map = nodes.MapOf(nodes.Around(newest, path), newest, options_.map_radius);
   std::vector<Eigen::Vector2f> points;
   points.reserve(map.surfels().size());
   for (const Surfel& s : map.surfels()) points.push_back(s.position);
@@ -111,14 +103,9 @@ std::vector<Eigen::Vector2f> LoopCloser::Surroundings(const Nodes& nodes, double
 void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
   const int newest = nodes.size() - 1;
   const int j = candidate.node;
-  int first = j;
-  while (first > 0 && nodes.PathLength(first - 1, j) <= options_.map_path) --first;
-  int last = j;
-  while (last + options_.recent_nodes < newest &&
-         nodes.PathLength(j, last + 1) <= options_.map_path) {
-    ++last;
-  }
-  const LocalMap map = nodes.MapOf(first, last, j, options_.map_radius);
+  NodeRange range = nodes.Around(j, options_.map_path);
+  range.last = std::min(range.last, std::max(j, newest - options_.recent_nodes));
+  const LocalMap map = nodes.MapOf(range, j, options_.map_radius);
   const PointScan& scan = nodes.scan(newest);
   const bool wide = std::max(candidate.window.x, candidate.window.y) >= options_.surroundings_from;
   const std::vector<Eigen::Vector2f> points =
@@ -206,6 +193,34 @@ std::vector<int> LoopCloser::Close(const Nodes& nodes,
   }
   if (pool_.size() == before) return {};
   return Verify(nodes);
+}
+
+void LoopCloser::Decide(const std::vector<int>& believed, bool kept) {
+  for (int index : believed) {
+    record(index).outcome = kept ? ClosureOutcome::kAccepted : ClosureOutcome::kRejected;
+  }
+  if (kept) return;
+  std::erase_if(pool_, [&](int index) {
+    return std::find(believed.begin(), believed.end(), index) != believed.end();
+  });
+}
+
+ClosureRecord* LoopCloser::FindAccepted(int from, int to) {
+  // Records are in the order of their newer node.
+  const auto first = std::lower_bound(records_.begin(), records_.end(), to,
+                                      [](const ClosureRecord& r, int node) { return r.to < node; });
+  for (auto it = first; it != records_.end() && it->to == to; ++it) {
+    if (it->from == from && it->outcome != ClosureOutcome::kRejected) return &*it;
+  }
+  return nullptr;
+}
+
+void LoopCloser::Reject(int from, int to) {
+  if (ClosureRecord* found = FindAccepted(from, to)) found->outcome = ClosureOutcome::kRejected;
+}
+
+void LoopCloser::SetChi2(int from, int to, double chi2) {
+  if (ClosureRecord* found = FindAccepted(from, to)) found->chi2 = chi2;
 }
 
 void LoopCloser::Finish() {

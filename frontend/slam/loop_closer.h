@@ -43,16 +43,25 @@ class LoopCloser {
   explicit LoopCloser(const LoopCloserOptions& options = {}) : options_(options) {}
 
   /// Matches the newest node against the old places inside the gate. `covariances[j]`: of node j
-  /// relative to the newest, in j's own frame. Returns the indices of records to be believed now.
+  /// relative to the newest, in j's own frame. Returns the indices of records to be believed now;
+  /// tell Decide() what came of them.
   std::vector<int> Close(const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances);
+
+  /// What became of the records that Close() returned: they stay in the graph, or not.
+  void Decide(const std::vector<int>& believed, bool kept);
+
+  /// The closure between two nodes was taken out again, or its error is now known.
+  void Reject(int from, int to);
+  void SetChi2(int from, int to, double chi2);
 
   /// Ends the run: what is still pending found no company.
   void Finish();
 
   const std::vector<ClosureRecord>& records() const { return records_; }
-  ClosureRecord& record(int index) { return records_[static_cast<std::size_t>(index)]; }
 
  private:
+  ClosureRecord& record(int index) { return records_[static_cast<std::size_t>(index)]; }
+  ClosureRecord* FindAccepted(int from, int to);
   std::vector<ClosureCandidate> FindCandidates(
       const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const;
   void Try(const Nodes& nodes, const ClosureCandidate& candidate);

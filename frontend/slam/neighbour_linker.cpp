@@ -1,25 +1,36 @@
 #include "frontend/slam/neighbour_linker.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-
-#include "frontend/slam/loop_closer.h"
+#include <utility>
 
 namespace loopgrid {
 namespace {
+
+// The other ends of each node's closures.
+std::vector<std::vector<int>> ClosuresOf(const Nodes& nodes) {
+  std::vector<std::vector<int>> others(static_cast<std::size_t>(nodes.size()));
+  for (const Constraint& c : nodes.graph->constraints) {
+    if (!c.robust) continue;
+    others[static_cast<std::size_t>(c.from)].push_back(c.to);
+    others[static_cast<std::size_t>(c.to)].push_back(c.from);
+  }
+  return others;
+}
 
 // The nearest node of each other pass by node i.
 std::vector<int> NearestOfEachPass(const Nodes& nodes, int i,
                                    const NeighbourLinkerOptions& options) {
   std::vector<int> nearest;
   double nearest_distance = 0.0;
-  int last = -1000000;
+  int last = -1 - options.same_pass;
   for (int j = 0; j < nodes.size(); ++j) {
-    if (std::abs(i - j) <= options.recent_nodes) continue;
+    if (std::abs(i - j) <= options.same_pass) continue;
     const double distance = (nodes.pose(j).translation() - nodes.pose(i).translation()).norm();
     if (distance > options.distance) continue;
-    if (j - last > options.same_pass) {
+    if (j - last > options.same_pass || nearest.empty()) {
       nearest.push_back(j);
       nearest_distance = distance;
     } else if (distance < nearest_distance) {
@@ -31,37 +42,43 @@ std::vector<int> NearestOfEachPass(const Nodes& nodes, int i,
   return nearest;
 }
 
+bool IsBelievable(const ClosureMatch& match, const SE2& predicted,
+                  const NeighbourLinkerOptions& options) {
+  if (!match.found || match.denied_share > options.max_denied_share) return false;
+  const SE2 shift = predicted.Inverse() * match.T_map_robot;
+  return shift.translation().norm() <= options.max_shift &&
+         std::abs(shift.theta()) <= options.max_turn;
+}
+
 }  // namespace
 
 std::vector<Constraint> LinkNeighbours(const Nodes& nodes, const NeighbourLinkerOptions& options) {
-  std::vector<std::vector<int>> linked_to(static_cast<std::size_t>(nodes.size()));
+  // By the node whose map is matched with, so that each map is made once.
+  const std::vector<std::vector<int>> closures = ClosuresOf(nodes);
+  std::vector<std::vector<int>> scans_for_map(static_cast<std::size_t>(nodes.size()));
   for (int i = 0; i < nodes.size(); ++i) {
-    for (int j : NearestOfEachPass(nodes, i, options))
-      linked_to[static_cast<std::size_t>(j)].push_back(i);
+    for (int j : NearestOfEachPass(nodes, i, options)) {
+      const auto& linked = closures[static_cast<std::size_t>(i)];
+      const bool spared = std::any_of(linked.begin(), linked.end(), [&](int other) {
+        return std::abs(other - j) <= options.already_linked;
+      });
+      if (!spared) scans_for_map[static_cast<std::size_t>(j)].push_back(i);
+    }
   }
   std::vector<Constraint> links;
   for (int j = 0; j < nodes.size(); ++j) {
-    const std::vector<int>& others = linked_to[static_cast<std::size_t>(j)];
+    const std::vector<int>& others = scans_for_map[static_cast<std::size_t>(j)];
     if (others.empty()) continue;
-    int first = j;
-    while (first > 0 && nodes.PathLength(first - 1, j) <= options.map_path) --first;
-    int last = j;
-    while (last + 1 < nodes.size() && nodes.PathLength(j, last + 1) <= options.map_path) ++last;
-    const LocalMap map = nodes.MapOf(first, last, j, options.map_radius);
+    const NodeRange range = nodes.Around(j, options.map_path);
+    const LocalMap map = nodes.MapOf(range, j, options.map_radius);
     for (int i : others) {
-      if (i >= first && i <= last) continue;
+      if (i >= range.first && i <= range.last) continue;
       const SE2 predicted = nodes.Between(j, i);
-      const RefinedMatch match = RefineMatch(map, nodes.scan(i), predicted,
-                                             {predicted, Eigen::Matrix3d::Zero()}, options.refiner);
-      const SE2 shift = predicted.Inverse() * match.T_map_robot;
-      if (match.inlier_share < options.min_inlier_share) continue;
-      if (shift.translation().norm() > options.max_shift) continue;
-      if (std::abs(shift.theta()) > options.max_turn) continue;
-      links.push_back({j, i, match.T_map_robot,
-                       (match.information.inverse() +
-                        Eigen::Matrix3d(Eigen::Vector3d(1e-4, 1e-4, 1.2e-5).asDiagonal()))
-                           .inverse(),
-                       true});
+      const PointScan& scan = nodes.scan(i);
+      const ClosureMatch match =
+          MatchClosure(map, scan, scan.hits, predicted, options.window, options.matcher);
+      if (!IsBelievable(match, predicted, options)) continue;
+      links.push_back({j, i, match.T_map_robot, match.covariance.inverse(), true});
     }
   }
   return links;

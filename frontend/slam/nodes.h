@@ -8,6 +8,12 @@
 
 namespace loopgrid {
 
+/// Consecutive nodes, both ends included.
+struct NodeRange {
+  int first = 0;
+  int last = 0;
+};
+
 /// The nodes as the front-end sees them: a graph, and the scan that each node holds.
 struct Nodes {
   const PoseGraph* graph = nullptr;
@@ -20,11 +26,18 @@ struct Nodes {
   /// Pose of `b` in the frame of `a`.
   SE2 Between(int a, int b) const { return pose(a).Inverse() * pose(b); }
 
+  /// Distance from `node` to the next one, metres.
+  double StepLength(int node) const;
+
   /// Length of the path along the nodes from `a` to `b`, metres.
   double PathLength(int a, int b) const;
 
-  /// Surfaces seen from nodes [first, last], in the frame of node `origin`.
-  LocalMap MapOf(int first, int last, int origin, double radius) const;
+  /// The nodes within `path` metres of travel before and after `node`.
+  NodeRange Around(int node, double path) const;
+
+  /// Surfaces seen from the nodes of `range`, in the frame of node `origin`; those farther from it
+  /// than `radius` metres are left out.
+  LocalMap MapOf(const NodeRange& range, int origin, double radius) const;
 };
 
 }  // namespace loopgrid

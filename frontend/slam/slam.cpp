@@ -1,144 +1,145 @@
 #include "frontend/slam/slam.h"
 
-#include <Eigen/Dense>
-#include <chrono>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "backend/marginals.h"
-#include "backend/optimizer.h"
+#include "backend/normal_equations.h"
 #include "frontend/matching/sensor_model.h"
+#include "frontend/slam/closure_graph.h"
 #include "frontend/slam/loop_closer.h"
 #include "frontend/slam/neighbour_linker.h"
 #include "frontend/slam/nodes.h"
+#include "frontend/slam/stopwatch.h"
 #include "frontend/slam/tracker.h"
 
 namespace loopgrid {
 namespace {
 
-class Stopwatch {
- public:
-  explicit Stopwatch(double* total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() {
-    *total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
+constexpr int kTrackedNodes = 20;         // the newest nodes whose scans tracking matches with
+constexpr double kUnmatchedFactor = 4.0;  // of the odometry's covariance where a match failed
 
- private:
-  double* total_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-// A scan with its place beside the node it was taken after.
+// A scan with its place beside the node it was taken at or after.
 struct ScanEntry {
   double timestamp = 0.0;
   SE2 T_odom_robot;
-  int node = 0;  // the last node when it was taken
+  int node = 0;
   SE2 T_node_robot;
-  std::unique_ptr<PointScan> points;
+  std::unique_ptr<PointScan> points;  // nodes refer to it
 };
 
-OptimizerOptions ClosureOptimizerOptions() {
-  OptimizerOptions options;
-  options.max_iterations = 30;
-  options.relative_decrease = 1e-4;
-  options.absolute_decrease = 1e-3;
-  options.loss.kind = LossKind::kHuber;
-  return options;
-}
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
 class Slam::Impl {
  public:
-  explicit Impl(const SlamOptions& options)
-      : options_(options), tracker_(), closer_(), optimizer_(ClosureOptimizerOptions()) {
+  explicit Impl(const SlamOptions& options) : options_(options) {
     options_.Validate();
-    nodes_.graph = &graph_;
+    nodes_.graph = &graph_.graph();
   }
 
   TrackedScan AddScan(const Observation& observation) {
+    const SE2 motion =
+        scans_.empty() ? SE2() : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
     ScanEntry entry;
     entry.timestamp = observation.timestamp;
     entry.T_odom_robot = observation.T_odom_robot;
     entry.points = std::make_unique<PointScan>(sensor_.Interpret(observation.scan));
-    const bool first = scans_.empty();
-    const SE2 motion =
-        first ? SE2() : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
     scans_.push_back(std::move(entry));
     ++statistics_.scans;
-    return first ? AddFirstNode() : Track(motion);
+    if (nodes_.size() == 0) return AddFirstNode();
+
+    TrackedScan result = Track(motion);
+    const SE2& step = scans_.back().T_node_robot;
+    if (step.translation().norm() >= options_.node_distance ||
+        std::abs(step.theta()) >= options_.node_angle) {
+      result.node = AddNode(result.T_map_robot, step, result.covariance);
+      result.optimized = CloseLoops();
+      result.T_map_robot = nodes_.pose(result.node);
+      SetTrackingMap();
+    }
+    return result;
   }
 
   void Finish() {
     const Stopwatch stopwatch(&statistics_.times.finishing);
     closer_.Finish();
-    const std::size_t before = graph_.constraints.size();
-    int rounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 2;
-    for (int round = 0; round < rounds; ++round) {
-      graph_.constraints.resize(before);
-      NeighbourLinkerOptions op;
-      if (getenv("ND")) op.distance = atof(getenv("ND"));
-      if (getenv("NP")) op.map_path = atof(getenv("NP"));
-      if (getenv("NI")) op.min_inlier_share = atof(getenv("NI"));
-      for (const Constraint& link : LinkNeighbours(nodes_, op)) {
-        graph_.constraints.push_back(link);
-      }
-      Optimizer optimizer(ClosureOptimizerOptions());
-      optimizer.Optimize(&graph_);
+    for (const Constraint& c : graph_.Settle(LinkNeighbours(nodes_))) closer_.Reject(c.from, c.to);
+    for (const Constraint& c : graph_.graph().constraints) {
+      if (c.robust) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
     }
   }
 
-  PoseGraph graph_;
-  Nodes nodes_;
-  std::vector<int> node_scans_;
-  std::vector<ScanEntry> scans_;
-  SlamStatistics statistics_;
-  SlamOptions options_;
+  // The node's pose and the scan's place beside it, shifted in proportion to its share of the way
+  // by what the graph has changed between this node and the next.
+  SE2 ScanPose(int scan) const {
+    const ScanEntry& entry = scans_[Index(scan)];
+    const SE2& node = nodes_.pose(entry.node);
+    if (entry.node + 1 >= nodes_.size()) return node * entry.T_node_robot;
+    const int first = node_scans_[Index(entry.node)];
+    const int next = node_scans_[Index(entry.node + 1)];
+    const double share = static_cast<double>(scan - first) / (next - first);
+    const SE2 change =
+        tracked_steps_[Index(entry.node)].Inverse() * nodes_.Between(entry.node, entry.node + 1);
+    return node * entry.T_node_robot * SE2::Exp(share * change.Log());
+  }
 
+  SlamStatistics Statistics() const {
+    SlamStatistics statistics = statistics_;
+    PoseGraph before = graph_.graph();
+    statistics.error_after = NormalEquations::Error(before, {});
+    for (int k = 0; k < nodes_.size(); ++k) {
+      before.poses[Index(k)] = scans_[Index(node_scans_[Index(k)])].T_odom_robot;
+    }
+    statistics.error_before = NormalEquations::Error(before, {});
+    return statistics;
+  }
+
+  const std::vector<ScanEntry>& scans() const { return scans_; }
+  const std::vector<int>& node_scans() const { return node_scans_; }
+  const ClosureGraph& graph() const { return graph_; }
   const LoopCloser& closer() const { return closer_; }
 
  private:
   TrackedScan AddFirstNode() {
-    AppendNode(SE2());
-    tracker_.SetMap(RecentScans(), SE2());
-    return {SE2(), Eigen::Matrix3d::Zero(), true, 0, false};
-  }
-
-  TrackedScan Track(const SE2& motion) {
-    TrackedPose tracked;
-    {
-      const Stopwatch stopwatch(&statistics_.times.tracking);
-      tracked = tracker_.Track(*scans_.back().points, motion);
-    }
-    if (!tracked.matched) ++statistics_.failed_matches;
-    motion_since_node_ = motion_since_node_ * motion;
-    const int last = nodes_.size() - 1;
-    const SE2 T_node_robot = nodes_.pose(last).Inverse() * tracked.T_map_robot;
-    scans_.back().node = last;
-    scans_.back().T_node_robot = T_node_robot;
-
     TrackedScan result;
-    result.T_map_robot = tracked.T_map_robot;
-    result.matched = tracked.matched;
-    result.covariance = SequentialCovariance(tracked);
-    if (T_node_robot.translation().norm() >= options_.node_distance ||
-        std::abs(T_node_robot.theta()) >= options_.node_angle) {
-      graph_.constraints.push_back(
-          {last, last + 1, T_node_robot, result.covariance.inverse(), false});
-      result.node = AppendNode(tracked.T_map_robot);
-      result.optimized = CloseLoops();
-      const Stopwatch stopwatch(&statistics_.times.tracking);
-      tracker_.SetMap(RecentScans(), nodes_.pose(result.node));
-      result.T_map_robot = nodes_.pose(result.node);
-    }
+    result.matched = true;
+    result.node = AddNode(SE2(), SE2(), Eigen::Matrix3d::Zero());
+    SetTrackingMap();
     return result;
   }
 
-  int AppendNode(const SE2& pose) {
+  TrackedScan Track(const SE2& motion) {
+    const Stopwatch stopwatch(&statistics_.times.tracking);
+    ScanEntry& entry = scans_.back();
+    const TrackedPose tracked = tracker_.Track(*entry.points, motion);
+    motion_since_node_ = motion_since_node_ * motion;
+    if (!tracked.matched) {
+      ++statistics_.failed_matches;
+      if (tracked.unusable) ++statistics_.unusable_scans;
+    }
+    entry.node = nodes_.size() - 1;
+    entry.T_node_robot = nodes_.pose(entry.node).Inverse() * tracked.T_map_robot;
+    TrackedScan result;
+    result.T_map_robot = tracked.T_map_robot;
+    result.matched = tracked.matched;
+    result.covariance = CovarianceSinceNode(tracked);
+    return result;
+  }
+
+  // Odometry since the last node, fused with the match where there was one.
+  Eigen::Matrix3d CovarianceSinceNode(const TrackedPose& tracked) const {
+    const Eigen::Matrix3d odometry = OdometryNoise().Covariance(motion_since_node_);
+    if (!tracked.matched) return kUnmatchedFactor * odometry;
+    return (odometry.inverse() + tracked.covariance.inverse()).inverse();
+  }
+
+  int AddNode(const SE2& T_map_robot, const SE2& T_last_node, const Eigen::Matrix3d& covariance) {
     const int node = nodes_.size();
-    graph_.poses.push_back(pose);
+    graph_.AddNode(T_map_robot, T_last_node, covariance);
+    if (node > 0) tracked_steps_.push_back(T_last_node);
     nodes_.scans.push_back(scans_.back().points.get());
     node_scans_.push_back(static_cast<int>(scans_.size()) - 1);
     scans_.back().node = node;
@@ -147,67 +148,46 @@ class Slam::Impl {
     return node;
   }
 
-  std::vector<PlacedScan> RecentScans() const {
-    std::vector<PlacedScan> placed;
-    for (int k = std::max(nodes_.size() - 20, 0); k < nodes_.size(); ++k) {
-      placed.push_back({&nodes_.scan(k), nodes_.pose(k)});
+  void SetTrackingMap() {
+    const Stopwatch stopwatch(&statistics_.times.tracking);
+    std::vector<PlacedScan> recent;
+    for (int k = std::max(nodes_.size() - kTrackedNodes, 0); k < nodes_.size(); ++k) {
+      recent.push_back({&nodes_.scan(k), nodes_.pose(k)});
     }
-    return placed;
+    tracker_.SetMap(recent, nodes_.pose(nodes_.size() - 1));
   }
 
-  // Odometry since the last node, fused with the match where there was one.
-  Eigen::Matrix3d SequentialCovariance(const TrackedPose& tracked) const {
-    const Eigen::Matrix3d odometry = noise_.Covariance(motion_since_node_);
-    if (!tracked.matched) return 4.0 * odometry;
-    return (odometry.inverse() + tracked.covariance.inverse()).inverse();
-  }
-
+  // True if the graph was optimised.
   bool CloseLoops() {
     std::vector<int> believed;
     {
       const Stopwatch stopwatch(&statistics_.times.closing);
-      const std::vector<Eigen::Matrix3d> covariances =
-          RelativeCovariances(graph_, nodes_.size() - 1).value();
-      believed = closer_.Close(nodes_, covariances);
+      believed = closer_.Close(nodes_, graph_.relative_covariances());
     }
     if (believed.empty()) return false;
     const Stopwatch stopwatch(&statistics_.times.optimizing);
-    return Believe(believed);
-  }
-
-  // Takes closures into the graph; those that stay in contradiction with it go out again.
-  bool Believe(const std::vector<int>& believed) {
-    const std::vector<SE2> before = graph_.poses;
-    const std::size_t first = graph_.constraints.size();
+    std::vector<Constraint> closures;
     for (int index : believed) {
-      ClosureRecord& record = closer_.record(index);
-      graph_.constraints.push_back(
-          {record.from, record.to, record.T_from_to, record.covariance.inverse(), true});
-      record.outcome = ClosureOutcome::kAccepted;
+      const ClosureRecord& r = closer_.records()[Index(index)];
+      closures.push_back({r.from, r.to, r.T_from_to, r.covariance.inverse(), true});
     }
-    optimizer_.Optimize(&graph_);
-    double worst = 0.0;
-    for (std::size_t k = 0; k < believed.size(); ++k) {
-      ClosureRecord& record = closer_.record(believed[k]);
-      const Constraint& c = graph_.constraints[first + k];
-      const Eigen::Vector3d e =
-          (c.T_from_to.Inverse() * nodes_.Between(c.from, c.to)).coordinates();
-      record.chi2 = e.dot(c.information * e);
-      worst = std::max(worst, record.chi2);
-    }
-    if (worst < 30.0) return true;
-    graph_.constraints.resize(first);
-    graph_.poses = before;
-    for (int index : believed) closer_.record(index).outcome = ClosureOutcome::kRejected;
-    return false;
+    const bool kept = graph_.TryClosures(closures);
+    for (const Constraint& c : closures) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
+    closer_.Decide(believed, kept);
+    return kept;
   }
 
+  SlamOptions options_;
   SensorModel sensor_;
   Tracker tracker_;
   LoopCloser closer_;
-  Optimizer optimizer_;
-  OdometryNoise noise_;
-  SE2 motion_since_node_;
+  ClosureGraph graph_;
+  Nodes nodes_;
+  std::vector<int> node_scans_;
+  std::vector<SE2> tracked_steps_;  // from each node to the next, as tracking saw it
+  std::vector<ScanEntry> scans_;
+  SE2 motion_since_node_;  // odometry
+  SlamStatistics statistics_;
 };
 
 Slam::Slam(const SlamOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -217,36 +197,37 @@ Slam& Slam::operator=(Slam&&) noexcept = default;
 
 TrackedScan Slam::AddScan(const Observation& observation) { return impl_->AddScan(observation); }
 void Slam::Finish() { impl_->Finish(); }
-const PoseGraph& Slam::graph() const { return impl_->graph_; }
-const std::vector<int>& Slam::node_scans() const { return impl_->node_scans_; }
-int Slam::scan_count() const { return static_cast<int>(impl_->scans_.size()); }
-double Slam::scan_timestamp(int scan) const {
-  return impl_->scans_[static_cast<std::size_t>(scan)].timestamp;
-}
-SE2 Slam::scan_odometry(int scan) const {
-  return impl_->scans_[static_cast<std::size_t>(scan)].T_odom_robot;
-}
+const PoseGraph& Slam::graph() const { return impl_->graph().graph(); }
+const std::vector<int>& Slam::node_scans() const { return impl_->node_scans(); }
+int Slam::scan_count() const { return static_cast<int>(impl_->scans().size()); }
+
+double Slam::scan_timestamp(int scan) const { return impl_->scans()[Index(scan)].timestamp; }
+
+SE2 Slam::scan_odometry(int scan) const { return impl_->scans()[Index(scan)].T_odom_robot; }
+
 std::vector<SE2> Slam::ScanPoses() const {
   std::vector<SE2> poses;
-  poses.reserve(impl_->scans_.size());
-  for (const ScanEntry& scan : impl_->scans_) {
-    poses.push_back(impl_->nodes_.pose(scan.node) * scan.T_node_robot);
-  }
+  poses.reserve(impl_->scans().size());
+  for (int scan = 0; scan < scan_count(); ++scan) poses.push_back(impl_->ScanPose(scan));
   return poses;
 }
+
 std::span<const Eigen::Vector2f> Slam::scan_hits(int scan) const {
-  return impl_->scans_[static_cast<std::size_t>(scan)].points->hits;
+  return impl_->scans()[Index(scan)].points->hits;
 }
+
 std::span<const Eigen::Vector2f> Slam::scan_no_returns(int scan) const {
-  return impl_->scans_[static_cast<std::size_t>(scan)].points->no_returns;
+  return impl_->scans()[Index(scan)].points->no_returns;
 }
-SE2 Slam::scan_laser(int scan) const {
-  return impl_->scans_[static_cast<std::size_t>(scan)].points->T_robot_laser;
-}
+
+SE2 Slam::scan_laser(int scan) const { return impl_->scans()[Index(scan)].points->T_robot_laser; }
+
 const std::vector<ClosureRecord>& Slam::closures() const { return impl_->closer().records(); }
+
 std::vector<Eigen::Matrix3d> Slam::NodeCovariances() const {
-  return RelativeCovariances(impl_->graph_, impl_->nodes_.size() - 1).value();
+  return impl_->graph().relative_covariances();
 }
-SlamStatistics Slam::statistics() const { return impl_->statistics_; }
+
+SlamStatistics Slam::statistics() const { return impl_->Statistics(); }
 
 }  // namespace loopgrid

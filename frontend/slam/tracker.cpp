@@ -43,7 +43,8 @@ void Tracker::SetMap(std::span<const PlacedScan> scans, const SE2& T_map_robot) 
 TrackedPose Tracker::Track(const PointScan& scan, const SE2& motion) {
   const SE2 predicted = T_map_robot_ * motion;
   TrackedPose result;
-  if (static_cast<int>(scan.size()) >= options_.min_points && table_ != nullptr) {
+  result.unusable = static_cast<int>(scan.size()) < options_.min_points;
+  if (!result.unusable && table_ != nullptr) {
     result = Match(scan, predicted, motion);
     if (!result.matched) {
       const TrackedPose found = MatchWithoutOdometry(scan, predicted);

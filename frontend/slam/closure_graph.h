@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "backend/optimizer.h"
+#include "backend/pose_graph.h"
+
+namespace loopgrid {
+
+/// The pose graph as SLAM grows it: a chain of nodes, and closures that are believed only as long
+/// as the rest of the graph lets them. Knows no scans.
+class ClosureGraph {
+ public:
+  ClosureGraph();
+
+  const PoseGraph& graph() const { return graph_; }
+  int size() const { return static_cast<int>(graph_.poses.size()); }
+
+  /// Adds a node at `T_map_node`, joined to the last one by what `T_last_node` (with `covariance`,
+  /// frame of the new node) says. The first node takes no constraint.
+  void AddNode(const SE2& T_map_node, const SE2& T_last_node, const Eigen::Matrix3d& covariance);
+
+  /// Adds closures and optimises. If that leaves a closure off by more than kMaxChi2, be it one of
+  /// them or an older one that was not, all of them go out again and the poses return to where they
+  /// were: false.
+  bool TryClosures(std::span<const Constraint> closures);
+
+  /// Ends the run: adds `links`, optimises to convergence, and takes out closures and links that
+  /// are off by more than kMaxChi2, the worst first. Returns those.
+  std::vector<Constraint> Settle(std::span<const Constraint> links);
+
+  /// Covariance of every node relative to the last one, each in its own frame.
+  const std::vector<Eigen::Matrix3d>& relative_covariances() const { return covariances_; }
+
+  /// chi-square e^T Omega e of a constraint at the present poses.
+  double Chi2(const Constraint& constraint) const;
+
+  static constexpr double kMaxChi2 = 25.0;  ///< five sigmas
+
+ private:
+  double WorstChi2() const;
+
+  PoseGraph graph_;
+  Optimizer optimizer_;
+  std::vector<Eigen::Matrix3d> covariances_;
+};
+
+}  // namespace loopgrid
