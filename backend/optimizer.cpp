@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <cstddef>
+#include <limits>
 
 #include "backend/base/error.h"
 
@@ -91,10 +92,6 @@ void Optimizer::Iterate(PoseGraph* graph, OptimizerResult* result) {
   result->termination = Termination::kMaxIterations;
 }
 
-double Optimizer::Negligible(const OptimizerResult& result) const {
-  return std::max(options_.absolute_decrease, options_.relative_decrease * result.final_error);
-}
-
 double Optimizer::Linearize(const PoseGraph& graph) {
   factor_is_current_ = false;
   return equations_.Linearize(graph, options_.loss);
@@ -112,41 +109,65 @@ std::optional<Marginals> Optimizer::ComputeMarginals() {
 }
 
 std::optional<Termination> Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  if (factor_fits_) {
+    const Step step = TryStep(graph, kSlow * last_promised_, result);
+    if (step == Step::kTaken) return std::nullopt;
+    if (step == Step::kNegligible) return Termination::kConverged;
+  }
   double& damping = result->damping;
   bool was_definite = false;
   bool was_rejected = false;
   bool was_raised = false;
   while (damping <= kLargestDamping) {
-    if (!factor_fits_ && !Factorize(damping)) {
+    if (!Factorize(damping)) {
       damping = Stronger(damping);
       was_raised = true;
       continue;
     }
     was_definite = true;
-    const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
-    const double promised = PromisedDecrease(dx, damping);
-    if (promised <= Negligible(*result)) {
-      if (was_rejected) return Termination::kStalled;
-      if (was_raised || damping == 0.0) return Termination::kConverged;
-      // Strong damping alone makes steps small: that is no sign of a minimum.
-      damping = Weaker(damping);
-      continue;
+    switch (TryStep(graph, kNoLimit, result)) {
+      case Step::kTaken:
+        damping = Weaker(damping);
+        return std::nullopt;
+      case Step::kNegligible:
+        if (was_rejected) return Termination::kStalled;
+        if (was_raised || damping == 0.0) return Termination::kConverged;
+        damping = Weaker(damping);  // strong damping makes small steps: no sign of a minimum
+        break;
+      case Step::kRejected:
+        damping = Stronger(damping);
+        was_rejected = was_raised = true;
     }
-    const bool is_old_factor = std::exchange(factor_fits_, false);
-    if (is_old_factor && promised > kSlow * last_promised_) continue;
-    const double before = result->final_error;
-    if (TryStep(graph, dx, &result->final_error)) {
-      const double kept = (before - result->final_error) / promised;
-      factor_fits_ = damping == 0.0 && std::abs(kept - 1.0) < kGoodModel;
-      last_promised_ = promised;
-      damping = Weaker(damping);
-      return std::nullopt;
-    }
-    if (is_old_factor) continue;
-    damping = Stronger(damping);
-    was_rejected = was_raised = true;
   }
   return was_definite ? Termination::kStalled : Termination::kIndefinite;
+}
+
+Optimizer::Step Optimizer::TryStep(PoseGraph* graph, double most_promised,
+                                   OptimizerResult* result) {
+  factor_fits_ = false;
+  const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
+  const double promised = PromisedDecrease(dx, result->damping);
+  const double negligible =
+      std::max(options_.absolute_decrease, options_.relative_decrease * result->final_error);
+  if (promised <= negligible) return Step::kNegligible;
+  if (promised > most_promised) return Step::kRejected;
+
+  poses_ = graph->poses;
+  for (std::size_t node = 0; node < graph->poses.size(); ++node) {
+    const int variable = equations_.variable(static_cast<int>(node));
+    if (variable >= 0) graph->poses[node] = poses_[node].Boxplus(dx.segment<3>(3 * variable));
+  }
+  const double error = NormalEquations::Error(*graph, options_.loss);
+  const double decrease = result->final_error - error;
+  if (!(decrease > 0.0)) {
+    graph->poses.swap(poses_);
+    return Step::kRejected;
+  }
+  result->final_error = error;
+  last_promised_ = promised;
+  factor_fits_ = result->damping == 0.0 && std::abs(decrease - promised) < kGoodModel * promised;
+  return Step::kTaken;
 }
 
 // With (H + lambda D) dx = -b the quadratic model falls by -(2 b^T dx + dx^T H dx).
@@ -158,21 +179,6 @@ double Optimizer::PromisedDecrease(const Eigen::VectorXd& dx, double damping) co
     promised += damping * dx.segment<3>(3 * i).cwiseAbs2().dot(H.diagonal(i).diagonal());
   }
   return promised;
-}
-
-bool Optimizer::TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error) {
-  poses_ = graph->poses;
-  for (std::size_t node = 0; node < graph->poses.size(); ++node) {
-    const int variable = equations_.variable(static_cast<int>(node));
-    if (variable >= 0) graph->poses[node] = poses_[node].Boxplus(dx.segment<3>(3 * variable));
-  }
-  const double new_error = NormalEquations::Error(*graph, options_.loss);
-  if (new_error < *error) {
-    *error = new_error;
-    return true;
-  }
-  graph->poses.swap(poses_);
-  return false;
 }
 
 }  // namespace loopgrid

@@ -65,12 +65,14 @@ class Optimizer {
   const NormalEquations& equations() const { return equations_; }
 
  private:
+  enum class Step { kTaken, kNegligible, kRejected };
+
   void Iterate(PoseGraph* graph, OptimizerResult* result);
-  /// Lowers F by one step; or says why there is none.
+  /// Lowers F by one step, or says why there is none.
   std::optional<Termination> TakeStep(PoseGraph* graph, OptimizerResult* result);
-  double Negligible(const OptimizerResult& result) const;
+  /// A step by the present factor, unless it promises more than a limit.
+  Step TryStep(PoseGraph* graph, double most_promised, OptimizerResult* result);
   double PromisedDecrease(const Eigen::VectorXd& dx, double damping) const;
-  bool TryStep(PoseGraph* graph, const Eigen::VectorXd& dx, double* error);
   double Linearize(const PoseGraph& graph);
   bool Factorize(double damping);
 

@@ -104,71 +104,93 @@ void FrontInverter::Invert(const double* panel, int size, int pivots, double* Z,
   }
 }
 
-/// Copies the part of the parent's Z that belongs to the rows of a child to the child's Z22.
+/// Inverts front after front from the last to the first: depth first from the roots, so that the
+/// part of the inverse over each front can lie on a stack, right behind its parent's.
 template <int kDim>
-void GatherFromParent(const double* Z_parent, int ld_parent, const int* positions, int count,
-                      double* Z22, int ld) {
-  for (int b = 0; b < count; ++b) {
-    for (int j = 0; j < kDim; ++j, Z22 += ld) {
-      const double* const from =
-          Z_parent + static_cast<std::ptrdiff_t>(kDim * positions[b] + j) * ld_parent;
-      for (int a = 0; a < count; ++a) {
-        for (int i = 0; i < kDim; ++i) Z22[kDim * a + i] = from[kDim * positions[a] + i];
+class SelectedInversion {
+ public:
+  using Blocks = std::vector<Eigen::Matrix<double, kDim, kDim>>;
+
+  explicit SelectedInversion(const SparseCholesky<kDim>& factor)
+      : factor_(factor), structure_(factor.structure()) {
+    PlaceFronts();
+  }
+
+  Blocks Run() {
+    Blocks blocks(structure_.order.size());
+    for (int s = structure_.supernode_count() - 1; s >= 0; --s) InvertFront(s, &blocks);
+    return blocks;
+  }
+
+ private:
+  int Size(int s) const { return kDim * (structure_.columns(s) + structure_.row_count(s)); }
+  double* Front(int s) { return stack_.data() + start_[Index(s)]; }
+
+  void PlaceFronts() {
+    const int count = structure_.supernode_count();
+    start_.assign(Index(count), 0);
+    has_child_.assign(Index(count), false);
+    std::size_t stack_size = 0;
+    const auto end_of = [this](int s) {
+      return start_[Index(s)] + Index(PaddedRows(Size(s))) * Index(Size(s));
+    };
+    for (int s = count - 1; s >= 0; --s) {
+      const int parent = structure_.parent[Index(s)];
+      if (parent != -1) {
+        has_child_[Index(parent)] = true;
+        start_[Index(s)] = end_of(parent);
+      }
+      stack_size = std::max(stack_size, end_of(s));
+    }
+    stack_.assign(stack_size + kRowAlignment, 0.0);  // extra rows as in PaddedMatrix
+  }
+
+  void InvertFront(int s, Blocks* blocks) {
+    const int size = Size(s);
+    const int ld = PaddedRows(size);
+    const int pivots = kDim * structure_.columns(s);
+    if (structure_.parent[Index(s)] != -1) {
+      GatherFromParent(s, Front(s) + pivots + static_cast<std::ptrdiff_t>(pivots) * ld, ld);
+    }
+    inverter_.Invert(factor_.panel(s), size, pivots, Front(s), ld, has_child_[Index(s)]);
+    for (int k = 0; k < structure_.columns(s); ++k) {
+      auto& block =
+          (*blocks)[Index(structure_.order[Index(structure_.first_column[Index(s)] + k)])];
+      for (int j = 0; j < kDim; ++j) {
+        for (int i = 0; i < kDim; ++i) block(i, j) = inverter_.own()(kDim * k + i, kDim * k + j);
       }
     }
   }
-}
+
+  /// Copies what the parent has over the rows of s.
+  void GatherFromParent(int s, double* Z22, int ld) {
+    const int parent = structure_.parent[Index(s)];
+    const std::ptrdiff_t parent_ld = PaddedRows(Size(parent));
+    const int* const positions = structure_.row_in_parent.data() + structure_.first_row[Index(s)];
+    const int count = structure_.row_count(s);
+    for (int b = 0; b < count; ++b) {
+      for (int j = 0; j < kDim; ++j, Z22 += ld) {
+        const double* const from = Front(parent) + (kDim * positions[b] + j) * parent_ld;
+        for (int a = 0; a < count; ++a) {
+          for (int i = 0; i < kDim; ++i) Z22[kDim * a + i] = from[kDim * positions[a] + i];
+        }
+      }
+    }
+  }
+
+  const SparseCholesky<kDim>& factor_;
+  const SymbolicFactor& structure_;
+  FrontInverter inverter_;
+  std::vector<bool> has_child_;
+  std::vector<std::size_t> start_;  // of each front on the stack
+  std::vector<double> stack_;
+};
 
 }  // namespace
 
 template <int kDim>
 std::vector<Eigen::Matrix<double, kDim, kDim>> InverseDiagonal(const SparseCholesky<kDim>& factor) {
-  const SymbolicFactor& structure = factor.structure();
-  const int count = structure.supernode_count();
-  std::vector<bool> has_child(Index(count), false);
-  for (int parent : structure.parent) {
-    if (parent != -1) has_child[Index(parent)] = true;
-  }
-  // Visiting supernodes from the last to the first goes depth first from the root: on a stack, each
-  // front's inverse lies right behind its parent's.
-  const auto size_of = [&](int s) {
-    return kDim * (structure.columns(s) + structure.row_count(s));
-  };
-  std::vector<std::size_t> start(Index(count) + 1, 0);
-  std::size_t stack_size = 0;
-  const auto end_of = [&](int s) {
-    return start[Index(s)] + Index(PaddedRows(size_of(s))) * Index(size_of(s));
-  };
-  for (int s = count - 1; s >= 0; --s) {
-    const int parent = structure.parent[Index(s)];
-    start[Index(s)] = parent == -1 ? 0 : end_of(parent);
-    stack_size = std::max(stack_size, end_of(s));
-  }
-  std::vector<double> stack(stack_size + kRowAlignment, 0.0);
-
-  std::vector<Eigen::Matrix<double, kDim, kDim>> blocks(structure.order.size());
-  FrontInverter inverter;
-  for (int s = count - 1; s >= 0; --s) {
-    const int size = size_of(s);
-    const int ld = PaddedRows(size);
-    const int pivots = kDim * structure.columns(s);
-    double* const Z = stack.data() + start[Index(s)];
-    const int parent = structure.parent[Index(s)];
-    if (parent != -1) {
-      GatherFromParent<kDim>(stack.data() + start[Index(parent)], PaddedRows(size_of(parent)),
-                             structure.row_in_parent.data() + structure.first_row[Index(s)],
-                             structure.row_count(s),
-                             Z + pivots + static_cast<std::ptrdiff_t>(pivots) * ld, ld);
-    }
-    inverter.Invert(factor.panel(s), size, pivots, Z, ld, has_child[Index(s)]);
-    for (int k = 0; k < structure.columns(s); ++k) {
-      auto& block = blocks[Index(structure.order[Index(structure.first_column[Index(s)] + k)])];
-      for (int j = 0; j < kDim; ++j) {
-        for (int i = 0; i < kDim; ++i) block(i, j) = inverter.own()(kDim * k + i, kDim * k + j);
-      }
-    }
-  }
-  return blocks;
+  return SelectedInversion<kDim>(factor).Run();
 }
 
 template std::vector<Eigen::Matrix3d> InverseDiagonal(const SparseCholesky<3>& factor);

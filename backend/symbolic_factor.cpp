@@ -3,8 +3,10 @@
 #include <cholmod.h>
 
 #include <algorithm>
+#include <limits>
 #include <new>
 #include <numeric>
+#include <utility>
 
 namespace loopgrid {
 namespace {
@@ -159,6 +161,43 @@ std::vector<int> FindSupernodes(const std::vector<int>& parent, const std::vecto
   return first;
 }
 
+/// The rows of a supernode are those of its last column.
+void ListRows(const ColumnLists& upper, const std::vector<int>& tree,
+              const std::vector<int>& counts, SymbolicFactor* factor) {
+  constexpr std::size_t kNotLast = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> next(counts.size(), kNotLast);  // where a column's next row goes
+  factor->first_row = {0};
+  for (std::size_t s = 0; s + 1 < factor->first_column.size(); ++s) {
+    const int last = factor->first_column[s + 1] - 1;
+    next[Index(last)] = factor->first_row.back();
+    factor->first_row.push_back(factor->first_row.back() + Index(counts[Index(last)]));
+  }
+  factor->rows.resize(factor->first_row.back());
+  ForEachFactorEntry(upper, tree, [&](int col, int row) {
+    if (next[Index(col)] != kNotLast) factor->rows[next[Index(col)]++] = row;
+  });
+}
+
+/// Finds the supernode that takes each supernode's update, and where in its front.
+void ConnectSupernodes(const std::vector<int>& tree, SymbolicFactor* factor) {
+  std::vector<int> supernode_of(tree.size());
+  const int count = static_cast<int>(factor->first_column.size()) - 1;
+  for (int s = 0; s < count; ++s) {
+    const int end = factor->first_column[Index(s) + 1];
+    for (int k = factor->first_column[Index(s)]; k < end; ++k) supernode_of[Index(k)] = s;
+  }
+  factor->parent.resize(Index(count));
+  factor->row_in_parent.resize(factor->rows.size());
+  for (int s = 0; s < count; ++s) {
+    const int up = tree[Index(factor->first_column[Index(s) + 1] - 1)];
+    const int parent = up == -1 ? -1 : supernode_of[Index(up)];
+    factor->parent[Index(s)] = parent;
+    for (std::size_t k = factor->first_row[Index(s)]; k < factor->first_row[Index(s) + 1]; ++k) {
+      factor->row_in_parent[k] = factor->PositionInFront(parent, factor->rows[k]);
+    }
+  }
+}
+
 }  // namespace
 
 int SymbolicFactor::PositionInFront(int s, int index) const {
@@ -194,48 +233,19 @@ std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
 }
 
 SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places) {
-  const int n = static_cast<int>(order.size());
   SymbolicFactor factor;
-  factor.position = Inverse(order);
-  const std::vector<int> visits =
-      Postorder(EliminationTree(UpperTriangle(places, factor.position)));
-  factor.order.resize(Index(n));
-  for (int k = 0; k < n; ++k) factor.order[Index(k)] = order[Index(visits[Index(k)])];
+  const std::vector<int> visits = Postorder(EliminationTree(UpperTriangle(places, Inverse(order))));
+  for (int visit : visits) factor.order.push_back(order[Index(visit)]);
   factor.position = Inverse(factor.order);
 
   const ColumnLists upper = UpperTriangle(places, factor.position);
   const std::vector<int> tree = EliminationTree(upper);
-  std::vector<int> counts(Index(n), 0);
+  std::vector<int> counts(order.size(), 0);
   ForEachFactorEntry(upper, tree, [&](int col, int) { ++counts[Index(col)]; });
   factor.entries = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   factor.first_column = FindSupernodes(tree, counts);
-
-  const int supernodes = static_cast<int>(factor.first_column.size()) - 1;
-  std::vector<int> supernode_of(Index(n));
-  // A supernode's rows are those of its last column.
-  std::vector<std::size_t> next_row(Index(n), 0);
-  std::vector<bool> is_last(Index(n), false);
-  factor.first_row.assign(Index(supernodes) + 1, 0);
-  factor.parent.resize(Index(supernodes));
-  for (int s = 0; s < supernodes; ++s) {
-    const int end = factor.first_column[Index(s) + 1];
-    for (int j = factor.first_column[Index(s)]; j < end; ++j) supernode_of[Index(j)] = s;
-    is_last[Index(end - 1)] = true;
-    next_row[Index(end - 1)] = factor.first_row[Index(s)];
-    factor.first_row[Index(s) + 1] = factor.first_row[Index(s)] + Index(counts[Index(end - 1)]);
-  }
-  factor.rows.resize(factor.first_row.back());
-  ForEachFactorEntry(upper, tree, [&](int col, int row) {
-    if (is_last[Index(col)]) factor.rows[next_row[Index(col)]++] = row;
-  });
-  factor.row_in_parent.resize(factor.rows.size());
-  for (int s = 0; s < supernodes; ++s) {
-    const int up = tree[Index(factor.first_column[Index(s) + 1] - 1)];
-    factor.parent[Index(s)] = up == -1 ? -1 : supernode_of[Index(up)];
-    for (std::size_t k = factor.first_row[Index(s)]; k < factor.first_row[Index(s) + 1]; ++k) {
-      factor.row_in_parent[k] = factor.PositionInFront(factor.parent[Index(s)], factor.rows[k]);
-    }
-  }
+  ListRows(upper, tree, counts, &factor);
+  ConnectSupernodes(tree, &factor);
   return factor;
 }
 

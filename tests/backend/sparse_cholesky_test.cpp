@@ -23,9 +23,11 @@ TEST(SparseCholesky, SolvesAsTheDenseMatrixDoes) {
     SparseCholesky<3> cholesky;
     cholesky.Analyze(H);
     ASSERT_TRUE(cholesky.Factorize(H));
-    const Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(3 * cols, 4);
-    EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10))
-        << "seed 31, " << cols << " columns";
+    for (int count : {1, 3, 4, 6}) {  // right-hand sides
+      const Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(3 * cols, count);
+      EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10))
+          << "seed 31, " << cols << " columns, " << count << " right-hand sides";
+    }
   }
 }
 
@@ -51,6 +53,29 @@ TEST(SparseCholesky, ReusesItsAnalysisForNewValues) {
     test_support::Randomize(&random, &H);
     ASSERT_TRUE(cholesky.Factorize(H));
     EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10)) << round;
+  }
+}
+
+TEST(SparseCholesky, KeepsUpWithAMatrixThatGrows) {
+  std::mt19937 random(38);
+  SymmetricBlockMatrix<3> H;
+  SparseCholesky<3> cholesky;
+  for (int cols = 1; cols <= 120; ++cols) {
+    H.Resize(cols);
+    if (cols > 1) H.FindOrAddBlock(cols - 2, cols - 1);
+    if (cols > 2) {
+      const int row = std::uniform_int_distribution<int>(0, cols - 3)(random);
+      H.FindOrAddBlock(row, cols - 1);
+    }
+    test_support::Randomize(&random, &H);
+    cholesky.Analyze(H);
+    ASSERT_TRUE(cholesky.Factorize(H));
+    const Eigen::VectorXd rhs = Eigen::VectorXd::Random(3 * cols);
+    EXPECT_TRUE(cholesky.Solve(rhs).isApprox(Dense(H).llt().solve(rhs), 1e-10))
+        << "seed 38, " << cols << " columns";
+    SparseCholesky<3> fresh;
+    fresh.Analyze(H);
+    EXPECT_LE(cholesky.structure().entries, 2 * fresh.structure().entries) << "the order is stale";
   }
 }
 
