@@ -41,6 +41,9 @@ constexpr std::array<Parameter, 10> kParameters = {{
     {"robot_rear_laser_max", kRear, &Fields::max_range, 0.0, kFarthestRange, false},
 }};
 
+/// How many steps the field of view is divided into: an even count lacks the last beam.
+std::size_t StepsOf(std::size_t count) { return std::max<std::size_t>(count - count % 2, 1); }
+
 /// The field of view of scanners with so many steps between beams, radians.
 double UsualFieldOfView(std::size_t steps) {
   switch (steps) {
@@ -96,7 +99,7 @@ const CarmenLaserParameters& CarmenParameters::Of(CarmenTag tag) const {
 }
 
 BeamAngles UsualBeamAngles(std::size_t count) {
-  const std::size_t steps = std::max<std::size_t>(count - count % 2, 1);
+  const std::size_t steps = StepsOf(count);
   const double field_of_view = UsualFieldOfView(steps);
   return {-0.5 * field_of_view, field_of_view / static_cast<double>(steps)};
 }
@@ -104,16 +107,17 @@ BeamAngles UsualBeamAngles(std::size_t count) {
 BeamAngles BeamAnglesOf(const CarmenLaserMessage& message,
                         const CarmenLaserParameters& parameters) {
   const BeamAngles usual = UsualBeamAngles(message.ranges.size());
-  const double intervals = static_cast<double>(message.ranges.size()) - 1.0;
   BeamAngles stated;
   if (message.has_angles) {
     stated = {message.start_angle, message.angular_resolution};
-    if (stated.step == 0.0 && intervals > 0.0) stated.step = message.field_of_view / intervals;
+    if (stated.step == 0.0) {
+      stated.step = message.field_of_view / static_cast<double>(StepsOf(message.ranges.size()));
+    }
   } else if (parameters.resolution > 0.0) {
     stated.step = parameters.resolution * kDegree;
     stated.first = usual.first * stated.step / usual.step;
   }
-  const double span = std::abs(stated.step) * intervals;
+  const double span = std::abs(stated.step) * (static_cast<double>(message.ranges.size()) - 1.0);
   return stated.step != 0.0 && span <= kFullTurn ? stated : usual;
 }
 

@@ -21,7 +21,7 @@ struct LogStatistics {
 };
 
 struct LogReaderOptions {
-  bool strict = false;  ///< stop at the first malformed line with an Error instead of skipping it
+  bool strict = false;  ///< stop at the first malformed entry with an Error instead of skipping it
   int max_reported_problems = 5;  ///< how many problems `first_problems` keeps
 };
 
@@ -31,8 +31,9 @@ class LogReader {
  public:
   virtual ~LogReader() = default;
 
-  /// The next observation, or false at the end of the log. Throws Error (kInput) if the file cannot
-  /// be read further, or in strict mode at the first malformed line.
+  /// The next observation, or false at the end of the log. A file that breaks off (cut or corrupt
+  /// gzip data, a damaged rawlog) ends there, which counts as malformed. Throws Error (kInput) if
+  /// not even its beginning can be read, or in strict mode at the first malformed entry.
   virtual bool Next(Observation* observation) = 0;
 
   virtual const LogStatistics& statistics() const = 0;

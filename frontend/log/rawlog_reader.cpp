@@ -130,6 +130,7 @@ class RawlogReader::Impl {
 
   bool ReadObject();
   void TakeActions(const mrpt::obs::CActionCollection& actions);
+  void TakeFrame(const mrpt::obs::CSensoryFrame& frame);
   void TakeObservation(const mrpt::obs::CObservation& observation);
   void TakeScan(const Scan& from);
   bool IsLaserInUse(const Scan& scan);
@@ -176,9 +177,7 @@ bool RawlogReader::Impl::ReadObject() {
   if (const auto* actions = dynamic_cast<const mrpt::obs::CActionCollection*>(object.get())) {
     TakeActions(*actions);
   } else if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(object.get())) {
-    for (const auto& observation : *frame) {
-      if (observation) TakeObservation(*observation);
-    }
+    TakeFrame(*frame);
   } else if (const auto* single = dynamic_cast<const mrpt::obs::CObservation*>(object.get())) {
     TakeObservation(*single);
   } else {
@@ -207,6 +206,15 @@ void RawlogReader::Impl::TakeActions(const mrpt::obs::CActionCollection& actions
     T_odom_robot_ = moved;
     has_actions_ = true;
     ++statistics_.odometry;
+  }
+}
+
+void RawlogReader::Impl::TakeFrame(const mrpt::obs::CSensoryFrame& frame) {
+  for (const bool scans : {false, true}) {  // odometry first, wherever it stands in the frame
+    for (const auto& observation : frame) {
+      const bool is_scan = dynamic_cast<const Scan*>(observation.get()) != nullptr;
+      if (observation && is_scan == scans) TakeObservation(*observation);
+    }
   }
 }
 

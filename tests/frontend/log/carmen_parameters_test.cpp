@@ -94,6 +94,10 @@ TEST(BeamAnglesOf, RobotLaserStatesItsOwn) {
   angles = BeamAnglesOf(message, parameters.Of(message.tag));
   EXPECT_EQ(angles.first, -1.0);
   EXPECT_EQ(angles.step, 0.5);
+  message.field_of_view = 2.5;
+  message.ranges.resize(10);  // of an even count the last beam is missing
+  EXPECT_EQ(BeamAnglesOf(message, parameters.Of(message.tag)).step, 0.25);
+  message.ranges.resize(5);
   message.field_of_view = 0.0;  // then the count does
   angles = BeamAnglesOf(message, parameters.Of(message.tag));
   EXPECT_NEAR(angles.first, -90.0 * kDegree, 1e-12);

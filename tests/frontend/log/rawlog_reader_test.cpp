@@ -135,6 +135,17 @@ TEST(RawlogReader, ReadsPlainObservationsWithAbsoluteOdometry) {
   EXPECT_EQ(log.statistics.ignored, 1);
 }
 
+TEST(RawlogReader, TheOdometryOfAFrameHoldsForItsScansWhereverItStands) {
+  const auto odometry = std::make_shared<mrpt::obs::CObservationOdometry>();
+  odometry->odometry = CPose2D(1.0, 2.0, 0.5);
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(std::make_shared<CObservation2DRangeScan>(Scan({1.0F, 2.0F})));
+  frame.insert(odometry);
+  RawlogBytes bytes;
+  bytes.Add(frame);
+  ExpectPose(Read(bytes).observations.at(0).T_odom_robot, 1.0, 2.0, 0.5);
+}
+
 TEST(RawlogReader, AbsoluteOdometryDoesNotMixIntoActions) {
   mrpt::obs::CObservationOdometry odometry;
   odometry.odometry = CPose2D(100.0, 0.0, 0.0);
