@@ -12,7 +12,7 @@ namespace loopgrid {
 struct MatchCovarianceOptions {
   /// Log-likelihood of a perfect hit over that of a miss. Below 1 because neighbouring beams err
   /// together: calibrated so that chi-square of closed loops comes out near its expectation.
-  double hit_log_likelihood = 2.0;
+  double hit_log_likelihood = 4.0;
   double narrowest = 0.002;  ///< standard deviation the lattice is laid for at least, metres ...
   double widest = 0.4;       ///< ... and at most: beyond, the match knows nothing
 };
