@@ -12,6 +12,15 @@ std::vector<Eigen::Vector2f> ThinPoints(std::span<const Eigen::Vector2f> points,
   return kept;
 }
 
+std::vector<Eigen::Vector2f> LimitPoints(std::span<const Eigen::Vector2f> points,
+                                         std::size_t count) {
+  if (points.size() <= count) return {points.begin(), points.end()};
+  std::vector<Eigen::Vector2f> kept;
+  kept.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) kept.push_back(points[i * points.size() / count]);
+  return kept;
+}
+
 double AngleStepFor(std::span<const Eigen::Vector2f> points, double resolution) {
   if (points.empty()) return 0.02;
   std::vector<float> ranges;

@@ -76,7 +76,7 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
   SE2 center = predicted;
   if (std::max(fine_window.x, fine_window.y) >= options.coarse_from) {
     const double cell = options.coarse_resolution;
-    const std::vector<Eigen::Vector2f> points = ThinPoints(surroundings, static_cast<float>(cell));
+    const std::vector<Eigen::Vector2f> points = LimitPoints(surroundings, options.coarse_points);
     const auto table = TableFor(map, points, center, fine_window, cell, options.coarse_sigma);
     if (!table) return match;
     const double angle_step = AngleStepFor(points, cell);

@@ -21,7 +21,7 @@ struct TrackerOptions {
   double min_inlier_share = 0.25;  ///< of the refined match, 0..1
   int min_points = 20;             ///< scans with fewer hits are not matched
   double lost_reach = 1.0;         ///< half width searched when the odometry was no help, metres
-  double lost_min_score = 0.5;    ///< what a match must reach then, 0..1 ...
+  double lost_min_score = 0.5;     ///< what a match must reach then, 0..1 ...
   double lost_min_inlier_share = 0.65;
   double lost_max_second = 0.8;  ///< ... and no other place may reach this share of it
 };
