@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "frontend/slam/consistency.h"
 
@@ -16,10 +17,13 @@ Eigen::Matrix3d Transported(const SE2& T_a_b, const Eigen::Matrix3d& covariance)
   return A * covariance * A.transpose();
 }
 
-// What may go wrong between two nodes that tracking joined.
+// What may have gone wrong between two nodes that tracking joined `path` metres apart. More than
+// tracking is usually off, so that true closures agree in its bad moments too.
 Eigen::Matrix3d ChainCovariance(double path) {
-  const double translation = 0.02 + 0.01 * path;
-  const double rotation = 0.005 + 0.002 * path;
+  constexpr double kFarthest = 50.0;  // metres; beyond, the graph says better
+  const double metres = std::min(path, kFarthest);
+  const double translation = 0.02 + 0.01 * metres;
+  const double rotation = 0.005 + 0.002 * metres;
   return Eigen::Vector3d(translation * translation, translation * translation, rotation * rotation)
       .asDiagonal();
 }
@@ -28,6 +32,11 @@ Eigen::Matrix3d ChainCovariance(double path) {
 double LargestSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance.topLeftCorner<2, 2>());
   return std::sqrt(solver.eigenvalues()(1));
+}
+
+bool IsLikelier(const ClosureCandidate& a, const ClosureCandidate& b) {
+  if (a.distance_sigmas != b.distance_sigmas) return a.distance_sigmas < b.distance_sigmas;
+  return a.distance < b.distance;
 }
 
 // Distance of `offset` beyond `reach` metres, in sigmas of `covariance`.
@@ -41,54 +50,53 @@ double SigmasBeyond(const Eigen::Vector2d& offset, double reach,
 
 }  // namespace
 
+std::optional<ClosureCandidate> LoopCloser::Gate(const SE2& T_old_newest,
+                                                 const Eigen::Matrix3d& covariance) const {
+  const Eigen::Vector2d p = T_old_newest.translation();
+  // A motion e of the old node in its own frame moves the newest, seen from there, by -e_xy and
+  // turns it by -e_theta.
+  Eigen::Matrix<double, 2, 3> J;
+  J << -1.0, 0.0, p.y(), 0.0, -1.0, -p.x();
+  const Eigen::Matrix2d S = J * covariance * J.transpose() + 1e-6 * Eigen::Matrix2d::Identity();
+  ClosureCandidate candidate;
+  candidate.distance = p.norm();
+  candidate.distance_sigmas = SigmasBeyond(p, options_.view_distance, S);
+  if (!(candidate.distance_sigmas <= options_.gate_sigmas)) return std::nullopt;
+  candidate.window = {
+      options_.gate_sigmas * std::sqrt(S(0, 0)) + options_.window_margin,
+      options_.gate_sigmas * std::sqrt(S(1, 1)) + options_.window_margin,
+      options_.gate_sigmas * std::sqrt(covariance(2, 2)) + options_.window_angle_margin};
+  return candidate;
+}
+
 std::vector<ClosureCandidate> LoopCloser::FindCandidates(
     const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const {
   const int newest = nodes.size() - 1;
   const int last_old = std::min(newest - options_.recent_nodes,
                                 nodes.Around(newest, options_.recent_path).first - 1);
-
-  std::vector<ClosureCandidate> places;
-  int last_hit = -1000;
-  double best_length = 0.0;
+  // Of the consecutive nodes of one pass the likeliest, of those the nearest.
+  std::vector<ClosureCandidate> passes;
+  int last_hit = -1 - options_.same_pass;
   for (int j = 0; j <= last_old; ++j) {
-    const SE2 T_j_newest = nodes.Between(j, newest);
-    const Eigen::Vector2d p = T_j_newest.translation();
-    // Moving j by e in its own frame moves p by -e_xy and turns it by -e_theta.
-    Eigen::Matrix<double, 2, 3> J;
-    J << -1.0, 0.0, p.y(), 0.0, -1.0, -p.x();
-    Eigen::Matrix2d S = J * covariances[static_cast<std::size_t>(j)] * J.transpose();
-    S.diagonal().array() += 1e-6;
-    const double sigmas = SigmasBeyond(p, options_.view_distance, S);
-    if (sigmas > options_.gate_sigmas) continue;
-    ClosureCandidate candidate;
-    candidate.node = j;
-    candidate.distance_sigmas = sigmas;
-    const double theta_sigma = std::sqrt(covariances[static_cast<std::size_t>(j)](2, 2));
-    candidate.window = {options_.gate_sigmas * std::sqrt(S(0, 0)) + 0.15,
-                        options_.gate_sigmas * std::sqrt(S(1, 1)) + 0.15,
-                        options_.gate_sigmas * theta_sigma + 0.05};
-    // One place a pass: of consecutive nodes the likeliest, of those the nearest.
-    const bool same_place = j - last_hit <= 5;
-    const bool better =
-        same_place && (sigmas < places.back().distance_sigmas ||
-                       (sigmas <= places.back().distance_sigmas && p.norm() < best_length));
-    if (!same_place) {
-      places.push_back(candidate);
-      best_length = p.norm();
-    } else if (better) {
-      places.back() = candidate;
-      best_length = p.norm();
+    std::optional<ClosureCandidate> candidate =
+        Gate(nodes.Between(j, newest), covariances[static_cast<std::size_t>(j)]);
+    if (!candidate) continue;
+    candidate->node = j;
+    if (passes.empty() || j - last_hit > options_.same_pass) {
+      passes.push_back(*candidate);
+    } else if (IsLikelier(*candidate, passes.back())) {
+      passes.back() = *candidate;
     }
     last_hit = j;
   }
-  std::stable_sort(places.begin(), places.end(),
+  std::stable_sort(passes.begin(), passes.end(),
                    [](const ClosureCandidate& a, const ClosureCandidate& b) {
                      return a.distance_sigmas < b.distance_sigmas;
                    });
-  if (static_cast<int>(places.size()) > options_.max_candidates) {
-    places.resize(static_cast<std::size_t>(options_.max_candidates));
+  if (static_cast<int>(passes.size()) > options_.max_candidates) {
+    passes.resize(static_cast<std::size_t>(options_.max_candidates));
   }
-  return places;
+  return passes;
 }
 
 std::vector<Eigen::Vector2f> LoopCloser::Surroundings(const Nodes& nodes, double path) const {
@@ -98,6 +106,16 @@ std::vector<Eigen::Vector2f> LoopCloser::Surroundings(const Nodes& nodes, double
   points.reserve(map.surfels().size());
   for (const Surfel& s : map.surfels()) points.push_back(s.position);
   return points;
+}
+
+ClosureOutcome LoopCloser::Judge(const ClosureMatch& match) const {
+  if (!match.found) return ClosureOutcome::kLowScore;
+  if (match.second_score > options_.max_second_share * match.score) {
+    return ClosureOutcome::kAmbiguous;
+  }
+  if (match.denied_share > options_.max_denied_share) return ClosureOutcome::kContradicted;
+  if (LargestSigma(match.covariance) > options_.max_sigma) return ClosureOutcome::kUnconstrained;
+  return ClosureOutcome::kPending;
 }
 
 void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
@@ -121,16 +139,8 @@ void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
   record.T_from_to = match.T_map_robot;
   record.covariance = match.covariance;
   record.denied_share = match.denied_share;
-  if (!match.found) {
-    record.outcome = ClosureOutcome::kLowScore;
-  } else if (match.second_score > options_.max_second_share * match.score) {
-    record.outcome = ClosureOutcome::kAmbiguous;
-  } else if (match.denied_share > options_.max_denied_share) {
-    record.outcome = ClosureOutcome::kContradicted;
-  } else if (LargestSigma(match.covariance) > options_.max_sigma) {
-    record.outcome = ClosureOutcome::kUnconstrained;
-  } else {
-    record.outcome = ClosureOutcome::kPending;
+  record.outcome = Judge(match);
+  if (record.outcome == ClosureOutcome::kPending) {
     pool_.push_back(static_cast<int>(records_.size()));
   }
   records_.push_back(record);
@@ -146,8 +156,8 @@ double LoopCloser::Agreement(const Nodes& nodes, const ClosureRecord& a,
   const Eigen::Matrix3d covariance =
       Transported(new_step.Inverse(), a.covariance) + b.covariance +
       ChainCovariance(nodes.PathLength(a.to, b.to)) +
-      Transported(b.T_from_to.Inverse(),
-                  ChainCovariance(std::min(nodes.PathLength(a.from, b.from), 50.0)));
+      Transported(b.T_from_to.Inverse(), ChainCovariance(nodes.PathLength(a.from, b.from)));
+  // The expected chi-square is 3: an honest pair scores about exp(-1/2).
   return std::exp(-error.dot(covariance.ldlt().solve(error)) / 6.0);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "frontend/slam/closure_matcher.h"
@@ -11,13 +12,16 @@ namespace loopgrid {
 
 struct LoopCloserOptions {
   ClosureMatcherOptions matcher;
-  double gate_sigmas = 3.0;    ///< old nodes this close to the current pose are candidates
-  double view_distance = 4.0;  ///< nodes that see the same place may be this far apart, metres
-  int recent_nodes = 20;       ///< the newest nodes are not "old": tracking matches with them
-  double recent_path = 10.0;   ///< ... nor are those less than this much travel ago, metres
-  int max_candidates = 3;      ///< places matched for each node
-  double map_path = 10.0;      ///< nodes this much travel before and after make the map, metres
-  double map_radius = 25.0;    ///< surfaces farther from the old node are left out, metres
+  double gate_sigmas = 3.0;     ///< old nodes this close to the current pose are candidates
+  double view_distance = 4.0;   ///< nodes that see the same place may be this far apart, metres
+  int recent_nodes = 20;        ///< the newest nodes are not "old": tracking matches with them
+  double recent_path = 10.0;    ///< ... nor are those less than this much travel ago, metres
+  int same_pass = 5;            ///< candidates this close along the path are one pass
+  double window_margin = 0.15;  ///< searched beyond the gate, metres ...
+  double window_angle_margin = 0.05;  ///< ... and radians
+  int max_candidates = 3;             ///< places matched for each node
+  double map_path = 10.0;    ///< nodes this much travel before and after make the map, metres
+  double map_radius = 25.0;  ///< surfaces farther from the old node are left out, metres
   double surroundings_path =
       4.0;  ///< travel that is searched with where the window is large, metres
   double surroundings_from = 1.0;  ///< windows from this half width on are large, metres
@@ -32,8 +36,9 @@ struct LoopCloserOptions {
 
 /// Where an old place may be seen again.
 struct ClosureCandidate {
-  int node = 0;                  ///< best node of the place
-  double distance_sigmas = 0.0;  ///< how far the current pose is from it
+  int node = 0;                  ///< best node of the pass
+  double distance = 0.0;         ///< of the current pose from it, metres
+  double distance_sigmas = 0.0;  ///< ... beyond the view distance, in sigmas
   SearchWindow window;           ///< in the frame of `node`
 };
 
@@ -62,8 +67,11 @@ class LoopCloser {
  private:
   ClosureRecord& record(int index) { return records_[static_cast<std::size_t>(index)]; }
   ClosureRecord* FindAccepted(int from, int to);
+  std::optional<ClosureCandidate> Gate(const SE2& T_old_newest,
+                                       const Eigen::Matrix3d& covariance) const;
   std::vector<ClosureCandidate> FindCandidates(
       const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const;
+  ClosureOutcome Judge(const ClosureMatch& match) const;
   void Try(const Nodes& nodes, const ClosureCandidate& candidate);
   std::vector<Eigen::Vector2f> Surroundings(const Nodes& nodes, double path) const;
   double Agreement(const Nodes& nodes, const ClosureRecord& a, const ClosureRecord& b) const;
