@@ -15,6 +15,7 @@ constexpr double kBinWidth = 0.5;  // metres
 constexpr int kHeapNeighbours = 4;
 constexpr int kHeapFactor = 2;
 constexpr int kHeapLeast = 8;
+constexpr double kHeapNearest = 4.0;  // metres; any laser sees as far: nearer heaps are rooms
 
 }  // namespace
 
@@ -32,8 +33,10 @@ void SensorModel::Learn(const LaserScan& scan) {
   const int heap = at(bins - 1) + at(bins - 2);
   int below = 0;
   for (int k = 0; k < kHeapNeighbours; ++k) below += bins - 3 - k >= 0 ? at(bins - 3 - k) : 0;
-  const bool is_heap = heap > kHeapLeast && heap > kHeapFactor * below;
-  double limit = is_heap ? kBinWidth * (bins - 2) : kFarthest;
+  const double heap_begin = kBinWidth * (bins - 2);
+  const bool is_heap =
+      heap_begin >= kHeapNearest && heap > kHeapLeast && heap > kHeapFactor * below;
+  double limit = is_heap ? heap_begin : kFarthest;
   if (scan.max_range > 1.0) limit = std::min(limit, scan.max_range);
   usable_range_ = std::min(limit, kFarthest);
 }
