@@ -83,11 +83,14 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     NormalEquations equations = Linearize(map, scan, pose, scale);
     DiscountNormalErrors(options.normal_sigma, &equations);
-    Eigen::Matrix3d H = to_information * equations.H + prior.information;
+    const SE2 off = prior.T_map_robot.Inverse() * pose;
+    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();  // of `off` by a motion in the robot frame
+    J.topLeftCorner<2, 2>() = off.rotation();
+    Eigen::Matrix3d H = to_information * equations.H + J.transpose() * prior.information * J;
     // A direction that nothing speaks of stays where it is.
     H.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-3);
     const Eigen::Vector3d b =
-        to_information * equations.b + prior.information * pose.Boxminus(prior.T_map_robot);
+        to_information * equations.b + J.transpose() * prior.information * off.coordinates();
     const Eigen::Vector3d step = -H.ldlt().solve(b);
     pose = pose.Boxplus(step);
     const bool settled = step.head<2>().norm() < 1e-4 && std::abs(step.z()) < 1e-5;
