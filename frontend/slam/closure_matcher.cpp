@@ -12,6 +12,9 @@
 namespace loopgrid {
 namespace {
 
+constexpr double kReported =
+    0.8;  // share of the least score from where on a failure says its score
+
 int LevelsFor(double half_width, double resolution) {
   int levels = 2;
   while (levels < 7 && (1 << levels) * resolution < half_width) ++levels;
@@ -81,9 +84,9 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
     if (!table) return match;
     const double angle_step = AngleStepFor(points, cell);
     const CorrelativeSearch search(*table, points, center, fine_window, angle_step);
-    const SearchResult best = search.Best(options.min_score);
+    const SearchResult best = search.Best(kReported * options.min_score);
     match.score = best.score;
-    if (!best.found) return match;
+    if (best.score < options.min_score) return match;
     const SearchResult second = search.BestAwayFrom(
         best.offset, static_cast<int>(std::ceil(options.peak_distance / cell)),
         static_cast<int>(std::ceil(options.peak_angle / angle_step)), 0.7 * best.score);
@@ -96,9 +99,9 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
   const auto table = TableFor(map, points, center, fine_window, cell, options.fine_sigma);
   if (!table) return match;
   const CorrelativeSearch search(*table, points, center, fine_window, AngleStepFor(points, cell));
-  const SearchResult best = search.Best(options.min_score);
+  const SearchResult best = search.Best(kReported * options.min_score);
   match.score = best.score;
-  if (!best.found) return match;
+  if (best.score < options.min_score) return match;
   const RefinedMatch refined = RefineMatch(
       map, scan, best.T_map_robot, {best.T_map_robot, Eigen::Matrix3d::Zero()}, options.refiner);
   match.T_map_robot = refined.T_map_robot;

@@ -23,14 +23,15 @@ const char* ToString(ClosureOutcome outcome);
 
 /// One closure tried: the audit trail.
 struct ClosureRecord {
-  int from = 0;                  ///< the old node
-  int to = 0;                    ///< the newer node, the one whose scan was matched
-  double timestamp = 0.0;        ///< of the newer node's scan
-  double distance_sigmas = 0.0;  ///< Mahalanobis distance of the match from the prediction
-  double score = 0.0;            ///< match score, 0..1
-  double second_score = 0.0;     ///< best score of a separate peak, 0..1
-  double denied_share = 0.0;     ///< of the walls in view, those that beams would have gone through
-  SE2 T_from_to;                 ///< measured pose of `to` in `from`
+  int from = 0;            ///< the old node
+  int to = 0;              ///< the newer node, the one whose scan was matched
+  double timestamp = 0.0;  ///< of the newer node's scan
+  double distance_sigmas =
+      0.0;                    ///< of the old node from the pose before the match, see gate_sigmas
+  double score = 0.0;         ///< match score, 0..1; 0 where none came near the least one
+  double second_score = 0.0;  ///< best score of a separate peak, 0..1; 0 where none is near
+  double denied_share = 0.0;  ///< of the walls in view, those that beams would have gone through
+  SE2 T_from_to;              ///< measured pose of `to` in `from`
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_from_to, order (x, y, theta)
   double chi2 = 0.0;  ///< of the constraint after optimisation, where it got that far
   ClosureOutcome outcome = ClosureOutcome::kPending;

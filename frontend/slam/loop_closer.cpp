@@ -118,7 +118,7 @@ ClosureOutcome LoopCloser::Judge(const ClosureMatch& match) const {
   return ClosureOutcome::kPending;
 }
 
-void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
+void LoopCloser::Try(const Nodes& nodes, double timestamp, const ClosureCandidate& candidate) {
   const int newest = nodes.size() - 1;
   const int j = candidate.node;
   NodeRange range = nodes.Around(j, options_.map_path);
@@ -133,6 +133,7 @@ void LoopCloser::Try(const Nodes& nodes, const ClosureCandidate& candidate) {
   ClosureRecord record;
   record.from = j;
   record.to = newest;
+  record.timestamp = timestamp;
   record.distance_sigmas = candidate.distance_sigmas;
   record.score = match.score;
   record.second_score = match.second_score;
@@ -195,11 +196,11 @@ std::vector<int> LoopCloser::Verify(const Nodes& nodes) {
   return believed;
 }
 
-std::vector<int> LoopCloser::Close(const Nodes& nodes,
+std::vector<int> LoopCloser::Close(const Nodes& nodes, double timestamp,
                                    const std::vector<Eigen::Matrix3d>& covariances) {
   const std::size_t before = pool_.size();
   for (const ClosureCandidate& candidate : FindCandidates(nodes, covariances)) {
-    Try(nodes, candidate);
+    Try(nodes, timestamp, candidate);
   }
   if (pool_.size() == before) return {};
   return Verify(nodes);

@@ -47,10 +47,11 @@ class LoopCloser {
  public:
   explicit LoopCloser(const LoopCloserOptions& options = {}) : options_(options) {}
 
-  /// Matches the newest node against the old places inside the gate. `covariances[j]`: of node j
-  /// relative to the newest, in j's own frame. Returns the indices of records to be believed now;
-  /// tell Decide() what came of them.
-  std::vector<int> Close(const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances);
+  /// Matches the newest node, whose scan was taken at `timestamp`, against the old places inside
+  /// the gate. `covariances[j]`: of node j relative to the newest, in j's own frame. Returns the
+  /// indices of records to be believed now; tell Decide() what came of them.
+  std::vector<int> Close(const Nodes& nodes, double timestamp,
+                         const std::vector<Eigen::Matrix3d>& covariances);
 
   /// What became of the records that Close() returned: they stay in the graph, or not.
   void Decide(const std::vector<int>& believed, bool kept);
@@ -72,7 +73,7 @@ class LoopCloser {
   std::vector<ClosureCandidate> FindCandidates(
       const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const;
   ClosureOutcome Judge(const ClosureMatch& match) const;
-  void Try(const Nodes& nodes, const ClosureCandidate& candidate);
+  void Try(const Nodes& nodes, double timestamp, const ClosureCandidate& candidate);
   std::vector<Eigen::Vector2f> Surroundings(const Nodes& nodes, double path) const;
   double Agreement(const Nodes& nodes, const ClosureRecord& a, const ClosureRecord& b) const;
   std::vector<int> Verify(const Nodes& nodes);

@@ -162,7 +162,7 @@ class Slam::Impl {
     std::vector<int> believed;
     {
       const Stopwatch stopwatch(&statistics_.times.closing);
-      believed = closer_.Close(nodes_, graph_.relative_covariances());
+      believed = closer_.Close(nodes_, scans_.back().timestamp, graph_.relative_covariances());
     }
     if (believed.empty()) return false;
     const Stopwatch stopwatch(&statistics_.times.optimizing);
