@@ -1,10 +1,13 @@
 #include "backend/marginals.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
+#include "backend/base/error.h"
 #include "backend/selected_inverse.h"
 
 namespace loopgrid {
@@ -67,6 +70,10 @@ std::vector<Eigen::Matrix3d> Marginals::RelativeTo(int node) const {
 std::optional<std::vector<Eigen::Matrix3d>> RelativeCovariances(const PoseGraph& graph, int node,
                                                                 const RobustLoss& loss) {
   Validate(graph);
+  if (node < 0 || Index(node) >= graph.poses.size()) {
+    throw Error(ErrorCode::kInput, fmt::format("node {} is asked for, but the graph has {} nodes",
+                                               node, graph.poses.size()));
+  }
   NormalEquations equations;
   equations.SetStructure(graph);
   equations.Linearize(graph, loss);

@@ -42,7 +42,8 @@ class Marginals {
 };
 
 /// Marginals::RelativeTo for a graph of which nothing else is wanted. Nothing if the Hessian is not
-/// positive definite; throws Error (kInput) if the graph is not valid.
+/// positive definite; throws Error (kInput) if the graph is not valid or has no such
+/// node.
 std::optional<std::vector<Eigen::Matrix3d>> RelativeCovariances(const PoseGraph& graph, int node,
                                                                 const RobustLoss& loss = {});
 

@@ -12,11 +12,11 @@
 namespace loopgrid {
 namespace {
 
-// Levenberg-Marquardt's lambda multiplies the Hessian's diagonal (Marquardt's scaling), so these
-// have no unit.
+// Levenberg-Marquardt's lambda multiplies the Hessian's diagonal, so these have no unit.
 constexpr double kFirstDamping = 1e-5;
 constexpr double kLargestDamping = 1e10;
 constexpr double kDampingFactor = 10.0;
+constexpr double kSmallestScale = 1e-9;
 
 // When F fell as the model promised, to within this share, the Hessian has hardly changed, and its
 // factor serves for the next step too (a chord step of Newton's method), as long as each step
@@ -98,9 +98,19 @@ double Optimizer::Linearize(const PoseGraph& graph) {
 }
 
 bool Optimizer::Factorize(double damping) {
-  const bool is_definite = factor_.Factorize(equations_.hessian(), damping);
+  damping_ = damping > 0.0 ? damping * Scale() : Eigen::VectorXd();
+  const bool is_definite = factor_.Factorize(equations_.hessian(), damping_);
   factor_is_current_ = is_definite && damping == 0.0;
   return is_definite;
+}
+
+// The Hessian's diagonal (Marquardt's scaling), kept off zero: no constraint may say anything about
+// a direction.
+Eigen::VectorXd Optimizer::Scale() const {
+  const SymmetricBlockMatrix<3>& H = equations_.hessian();
+  Eigen::VectorXd scale(3 * H.cols());
+  for (int i = 0; i < H.cols(); ++i) scale.segment<3>(3 * i) = H.diagonal(i).diagonal();
+  return scale.cwiseMax(kSmallestScale * scale.maxCoeff());
 }
 
 std::optional<Marginals> Optimizer::ComputeMarginals() {
@@ -147,7 +157,9 @@ Optimizer::Step Optimizer::TryStep(PoseGraph* graph, double most_promised,
                                    OptimizerResult* result) {
   factor_fits_ = false;
   const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
-  const double promised = PromisedDecrease(dx, result->damping);
+  // The quadratic model falls by -(2 b^T dx + dx^T H dx), where (H + lambda D) dx = -b.
+  double promised = -equations_.gradient().dot(dx);
+  if (damping_.size() > 0) promised += dx.dot(damping_.cwiseProduct(dx));
   const double negligible =
       std::max(options_.absolute_decrease, options_.relative_decrease * result->final_error);
   if (promised <= negligible) return Step::kNegligible;
@@ -168,17 +180,6 @@ Optimizer::Step Optimizer::TryStep(PoseGraph* graph, double most_promised,
   last_promised_ = promised;
   factor_fits_ = result->damping == 0.0 && std::abs(decrease - promised) < kGoodModel * promised;
   return Step::kTaken;
-}
-
-// With (H + lambda D) dx = -b the quadratic model falls by -(2 b^T dx + dx^T H dx).
-double Optimizer::PromisedDecrease(const Eigen::VectorXd& dx, double damping) const {
-  double promised = -equations_.gradient().dot(dx);
-  if (damping == 0.0) return promised;
-  const SymmetricBlockMatrix<3>& H = equations_.hessian();
-  for (int i = 0; i < H.cols(); ++i) {
-    promised += damping * dx.segment<3>(3 * i).cwiseAbs2().dot(H.diagonal(i).diagonal());
-  }
-  return promised;
 }
 
 }  // namespace loopgrid

@@ -13,7 +13,7 @@
 namespace loopgrid {
 
 struct OptimizerOptions {
-  int max_iterations = 100;
+  int max_iterations = 100;  ///< steps
   /// Stop when the next step promises to lower F by less than this share of F ...
   double relative_decrease = 1e-8;
   /// ... or by less than this (F counts squared standard deviations).
@@ -72,13 +72,14 @@ class Optimizer {
   std::optional<Termination> TakeStep(PoseGraph* graph, OptimizerResult* result);
   /// A step by the present factor, unless it promises more than a limit.
   Step TryStep(PoseGraph* graph, double most_promised, OptimizerResult* result);
-  double PromisedDecrease(const Eigen::VectorXd& dx, double damping) const;
   double Linearize(const PoseGraph& graph);
   bool Factorize(double damping);
+  Eigen::VectorXd Scale() const;
 
   OptimizerOptions options_;
   NormalEquations equations_;
   SparseCholesky<3> factor_;
+  Eigen::VectorXd damping_;         // added to the Hessian's diagonal; empty: nothing
   bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
   bool factor_fits_ = false;        // factor_ is of the last poses, and good enough for these
   double last_promised_ = 0.0;      // decrease of F, by the last step

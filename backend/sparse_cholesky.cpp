@@ -17,7 +17,6 @@ constexpr double kSmallestPivot = 1e-13;
 constexpr double kWorthOrdering = 1.2;
 
 using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-using ConstColumnMajor = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
 std::size_t PaddedArea(int rows, int cols) {
   return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
@@ -122,14 +121,15 @@ void SparseCholesky<kDim>::PlaceMemory() {
 }
 
 template <int kDim>
-bool SparseCholesky<kDim>::Factorize(const Matrix& H, double damping) {
+bool SparseCholesky<kDim>::Factorize(const Matrix& H, const Eigen::VectorXd& added) {
   assert(H.cols() == static_cast<int>(structure_.order.size()));
+  assert(added.size() == 0 || added.size() == kDim * H.cols());
   for (int s = 0; s < structure_.supernode_count(); ++s) {
     const int size = FrontSize(s);
     const int ld = PaddedRows(size);
     const int pivots = kDim * structure_.columns(s);
     std::fill_n(front_.begin(), PaddedArea(size, size), 0.0);
-    Assemble(H, damping, s);
+    Assemble(H, added, s);
     AddUpdates(s);
     if (!EliminateColumns(front_.data(), ld, size, pivots,
                           &smallest_pivots_[Index(kDim * structure_.first_column[Index(s)])])) {
@@ -148,16 +148,17 @@ bool SparseCholesky<kDim>::Factorize(const Matrix& H, double damping) {
 }
 
 template <int kDim>
-void SparseCholesky<kDim>::Assemble(const Matrix& H, double damping, int s) {
+void SparseCholesky<kDim>::Assemble(const Matrix& H, const Eigen::VectorXd& added, int s) {
   const int size = FrontSize(s);
   ColumnMajor front(front_.data(), size, size, Eigen::OuterStride<>(PaddedRows(size)));
   const int first = structure_.first_column[Index(s)];
   for (int k = 0; k < structure_.columns(s); ++k) {
-    const Block& block = H.diagonal(structure_.order[Index(first + k)]);
-    front.template block<kDim, kDim>(kDim * k, kDim * k) = block;
+    const int col = structure_.order[Index(first + k)];
+    auto diagonal = front.template block<kDim, kDim>(kDim * k, kDim * k);
+    diagonal = H.diagonal(col);
+    if (added.size() > 0) diagonal.diagonal() += added.segment<kDim>(kDim * col);
     for (int i = 0; i < kDim; ++i) {
-      front(kDim * k + i, kDim * k + i) *= 1.0 + damping;
-      smallest_pivots_[Index(kDim * (first + k) + i)] = kSmallestPivot * block(i, i);
+      smallest_pivots_[Index(kDim * (first + k) + i)] = kSmallestPivot * diagonal(i, i);
     }
   }
   for (std::size_t k = first_source_[Index(s)]; k < first_source_[Index(s) + 1]; ++k) {

@@ -23,9 +23,9 @@ class SparseCholesky {
   /// last call the order is kept, new columns last, while that costs little fill.
   void Analyze(const Matrix& H);
 
-  /// Factorises H + damping * diag(H); H must have the pattern that was analysed. False if the
-  /// matrix is not positive definite to working precision.
-  [[nodiscard]] bool Factorize(const Matrix& H, double damping = 0.0);
+  /// Factorises H, plus a diagonal matrix if its entries are given. H must have the pattern that
+  /// was analysed. False if the sum is not positive definite to working precision.
+  [[nodiscard]] bool Factorize(const Matrix& H, const Eigen::VectorXd& added = {});
 
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
@@ -48,7 +48,7 @@ class SparseCholesky {
   bool KeepOrder(const Matrix& H);
   void PlaceSources(const Matrix& H);
   void PlaceMemory();
-  void Assemble(const Matrix& H, double damping, int s);
+  void Assemble(const Matrix& H, const Eigen::VectorXd& added, int s);
   void AddUpdates(int s);
   void SolveLanes(double* x, int lanes) const;
 
@@ -63,9 +63,9 @@ class SparseCholesky {
   std::vector<int> sibling_;               // the one before it
   std::vector<std::size_t> panel_start_;   // of each supernode's columns in values_
   std::vector<double> values_;             // the factor
-  std::vector<double> smallest_pivots_;
-  std::vector<double> front_;
-  std::vector<double> updates_;  // stack of Schur complements that wait for their parents
+  std::vector<double> smallest_pivots_;    // a pivot below is rounding noise
+  std::vector<double> front_;              // the one being eliminated
+  std::vector<double> updates_;            // stack of Schur complements that wait for their parents
   std::vector<std::size_t> update_start_;
   mutable std::vector<double> solve_work_;  // the right-hand sides of one front
 };

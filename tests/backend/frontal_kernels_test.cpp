@@ -11,7 +11,7 @@ namespace {
 
 /// A matrix in the layout of the kernels, with room for groups of rows that begin in mid-column.
 struct Padded {
-  Padded(const Eigen::MatrixXd& matrix, int first_row = 0)
+  explicit Padded(const Eigen::MatrixXd& matrix, int first_row = 0)
       : rows(static_cast<int>(matrix.rows())),
         cols(static_cast<int>(matrix.cols())),
         ld(PaddedRows(rows + first_row)),

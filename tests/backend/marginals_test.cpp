@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <string>
 
+#include "backend/base/error.h"
 #include "backend/optimizer.h"
 #include "tests/support/graphs.h"
 
@@ -114,6 +115,12 @@ TEST(RelativeCovariances, OfLoneNodesAreTrivial) {
   const auto covariances = RelativeCovariances(graph, 0);
   ASSERT_TRUE(covariances);
   EXPECT_TRUE((*covariances)[0].isZero(0.0));
+}
+
+TEST(RelativeCovariances, OfNodesThatAreNotThereAreErrors) {
+  const PoseGraph graph = test_support::RandomGraph(5, 0, 71);
+  EXPECT_THROW(RelativeCovariances(graph, 5), Error);
+  EXPECT_THROW(RelativeCovariances(graph, -1), Error);
 }
 
 TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {

@@ -192,6 +192,19 @@ TEST(Optimizer, DampsWhereTheConstraintsLeaveADirectionFree) {
   EXPECT_LT(result.final_error, 1e-6);
 }
 
+TEST(Optimizer, ANodeOfWhichConstraintsSayNothingDoesNotStopTheOthers) {
+  PoseGraph graph = test_support::RandomGraph(20, 15, 89);
+  PoseGraph expected = graph;
+  Optimizer().Optimize(&expected);
+  graph.poses.emplace_back(7.0, 8.0, 0.5);
+  graph.constraints.push_back({19, 20, SE2(1.0, 0.0, 0.0), Eigen::Matrix3d::Zero()});
+  Optimizer optimizer;
+  const OptimizerResult result = optimizer.Optimize(&graph);
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_NEAR(result.final_error, TotalChi2(expected), 1e-6 * result.final_error);
+  EXPECT_FALSE(optimizer.ComputeMarginals().has_value());
+}
+
 TEST(Optimizer, AConstraintThatIsWrongPullsLessWithARobustLoss) {
   PoseGraph graph = test_support::RandomGraph(50, 40, 86);
   PoseGraph right = graph;

@@ -31,16 +31,17 @@ TEST(SparseCholesky, SolvesAsTheDenseMatrixDoes) {
   }
 }
 
-TEST(SparseCholesky, DampingScalesTheDiagonal) {
+TEST(SparseCholesky, AddsToTheDiagonal) {
   std::mt19937 random(32);
   const SymmetricBlockMatrix<3> H = test_support::RandomBlockMatrix(20, 40, &random);
+  const Eigen::VectorXd added = Eigen::VectorXd::LinSpaced(60, 0.0, 3.0);
   SparseCholesky<3> cholesky;
   cholesky.Analyze(H);
-  ASSERT_TRUE(cholesky.Factorize(H, 0.5));
-  Eigen::MatrixXd damped = Dense(H);
-  damped.diagonal() *= 1.5;
+  ASSERT_TRUE(cholesky.Factorize(H, added));
+  Eigen::MatrixXd sum = Dense(H);
+  sum.diagonal() += added;
   const Eigen::VectorXd rhs = Eigen::VectorXd::Random(60);
-  EXPECT_TRUE(cholesky.Solve(rhs).isApprox(damped.llt().solve(rhs), 1e-10));
+  EXPECT_TRUE(cholesky.Solve(rhs).isApprox(sum.llt().solve(rhs), 1e-10));
 }
 
 TEST(SparseCholesky, ReusesItsAnalysisForNewValues) {
@@ -107,7 +108,7 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
   SparseCholesky<3> cholesky;
   cholesky.Analyze(H);
   EXPECT_FALSE(cholesky.Factorize(H));
-  EXPECT_TRUE(cholesky.Factorize(H, 1e-6));
+  EXPECT_TRUE(cholesky.Factorize(H, 1e-6 * dense.diagonal()));
 }
 
 TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {

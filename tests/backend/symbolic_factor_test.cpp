@@ -22,6 +22,7 @@ std::vector<BlockPlace> RandomPattern(int n, int count, std::mt19937* random) {
     if (a != b) places.insert(std::minmax(a, b));
   }
   std::vector<BlockPlace> result;
+  result.reserve(places.size());
   for (const auto& [row, col] : places) result.push_back({row, col});
   return result;
 }
