@@ -14,11 +14,12 @@ namespace loopgrid {
 
 /// What the tracker made of one scan.
 struct TrackedScan {
-  SE2 T_map_robot;             ///< current best pose
-  Eigen::Matrix3d covariance;  ///< of the pose relative to the last node, order (x, y, theta)
-  bool matched = false;        ///< false: the match failed and odometry carried the pose
-  int node = -1;               ///< index of the node this scan became, -1 if none
-  bool optimized = false;      ///< the graph was optimised; poses of older scans have moved
+  SE2 T_map_robot;  ///< current best pose
+  /// Of the pose relative to the last node, order (x, y, theta).
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  bool matched = false;    ///< false: the match failed and odometry carried the pose
+  int node = -1;           ///< index of the node this scan became, -1 if none
+  bool optimized = false;  ///< the graph was optimised; poses of older scans have moved
 };
 
 /// Seconds spent in each stage.
