@@ -8,6 +8,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
+#include <cstring>
 #include <deque>
 #include <numbers>
 #include <optional>
@@ -63,6 +64,13 @@ SE2 ToSE2(const mrpt::poses::CPose2D& pose) { return SE2(pose.x(), pose.y(), pos
 
 bool IsPlausible(const SE2& pose) { return IsPlausiblePose(pose.x(), pose.y(), pose.theta()); }
 
+/// A flag that MRPT copied from a file byte for byte: it may hold what no bool may.
+bool IsSet(const bool& flag) {
+  unsigned char byte = 0;
+  std::memcpy(&byte, &flag, 1);
+  return byte != 0;
+}
+
 /// Converts the readings; returns what is wrong with them, or an empty string.
 std::string ConvertRanges(const mrpt::obs::CObservation2DRangeScan& from, LaserScan* scan) {
   const std::size_t count = from.getScanSize();
@@ -97,7 +105,7 @@ std::string ConvertGeometry(const mrpt::obs::CObservation2DRangeScan& from, Lase
   const bool sick = (count == 180 || count == 360) && std::abs(aperture - kPi) < 1e-3;
   if (sick) angles = UsualBeamAngles(count);
   const bool upside_down = std::cos(from.sensorPose.roll()) < 0.0;
-  const double direction = from.rightToLeft != upside_down ? 1.0 : -1.0;
+  const double direction = IsSet(from.rightToLeft) != upside_down ? 1.0 : -1.0;
   scan->first_angle = direction * angles.first;
   scan->angle_step = direction * angles.step;
   scan->T_robot_laser = PlanarPose(from.sensorPose);

@@ -90,7 +90,8 @@ void RawlogStream::EnterObject(std::string_view class_name, bool old_format) {
 void RawlogStream::CheckWord(std::uint32_t word) {
   if (std::exchange(version_follows_, false)) return;
   if (std::exchange(method_follows_, false)) {
-    needs_pose_pdf_ = word != 0;  // 0: from odometry, which follows instead
+    if (word > 1) Fail("a movement estimated in an unknown way");
+    needs_pose_pdf_ = word == 1;  // 0: from odometry, which follows instead
   } else if (in_scan_ && after_object_) {
     if (word > kMostReadings) Fail("a scan of " + std::to_string(word) + " readings");
     in_scan_ = false;

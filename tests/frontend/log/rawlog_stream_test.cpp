@@ -82,6 +82,8 @@ TEST(RawlogStream, RefusesAMovementWithoutItsDistribution) {
   ReadPieces(movement(kOne, pdf));
   EXPECT_THAT([&] { ReadPieces(movement(kOne, kPose)); },
               ThrowsMessage<Error>(HasSubstr("a movement without its distribution")));
+  EXPECT_THAT([&] { ReadPieces(movement(kHugeWord, pdf)); },
+              ThrowsMessage<Error>(HasSubstr("estimated in an unknown way")));
   EXPECT_THAT([&] { ReadPieces(movement(kOne, "nullptr")); },
               ThrowsMessage<Error>(HasSubstr("a movement without its distribution")));
 }
