@@ -125,11 +125,14 @@ TEST(ScoreInformation, IsCloseToThatOfAFineLatticeOnASmoothScore) {
     }
     constexpr double kSigma = 0.2;
     const LikelihoodTable table = TableOf(points, 0.01F, static_cast<float>(kSigma));
-    const double per_metre = 2.0 * 12.0 / (kSigma * kSigma);
+    MatchCovarianceOptions options;
+    options.hit_log_likelihood = 2.0;
+    const double per_metre = options.hit_log_likelihood * 12.0 / (kSigma * kSigma);
     const Eigen::Vector3d shape(per_metre, per_metre, per_metre * lever * lever);
-    const Eigen::Matrix3d expected =
-        InformationBySumming(table, points, shape.cwiseSqrt().cwiseInverse(), 2.0);
-    const Eigen::Matrix3d information = ScoreInformation(table, points, SE2(), shape.asDiagonal());
+    const Eigen::Matrix3d expected = InformationBySumming(
+        table, points, shape.cwiseSqrt().cwiseInverse(), options.hit_log_likelihood);
+    const Eigen::Matrix3d information =
+        ScoreInformation(table, points, SE2(), shape.asDiagonal(), options);
     const Eigen::Vector3d ratio = information.diagonal().cwiseQuotient(expected.diagonal());
     // Its few points reach 2.7 sigmas: it knows less than all, but more than half of it.
     EXPECT_GT(ratio.minCoeff(), 0.5) << ratio.transpose();
