@@ -45,8 +45,8 @@ class CholmodSolver::Impl {
     factor_ = Check(cholmod_analyze_p(matrix_, scalar_order.data(), nullptr, 0, &common_));
   }
 
-  bool Factorize(const SymmetricBlockMatrix<3>& H, double damping) {
-    FillValues(H, damping);
+  bool Factorize(const SymmetricBlockMatrix<3>& H) {
+    FillValues(H);
     cholmod_factorize(matrix_, factor_, &common_);
     if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     return factor_->minor == factor_->n && PivotsAreSound();
@@ -134,7 +134,7 @@ class CholmodSolver::Impl {
     return order;
   }
 
-  void FillValues(const SymmetricBlockMatrix<3>& H, double damping) {
+  void FillValues(const SymmetricBlockMatrix<3>& H) {
     double* const values = static_cast<double*>(matrix_->x);
     for (int k = 0; k < H.block_count(); ++k) {
       const Eigen::Matrix3d& block = H.off_diagonal(k);
@@ -149,7 +149,6 @@ class CholmodSolver::Impl {
       for (int c = 0; c < kDim; ++c) {
         double* const last = values + ends[kDim * col + c] - 1;
         for (int r = 0; r <= c; ++r) last[r - c] = block(r, c);
-        *last *= 1.0 + damping;
       }
     }
   }
@@ -185,8 +184,8 @@ CholmodSolver& CholmodSolver::operator=(CholmodSolver&&) noexcept = default;
 
 void CholmodSolver::Analyze(const SymmetricBlockMatrix<3>& H) { impl_->Analyze(H); }
 
-bool CholmodSolver::Factorize(const SymmetricBlockMatrix<3>& H, double damping) {
-  return impl_->Factorize(H, damping);
+bool CholmodSolver::Factorize(const SymmetricBlockMatrix<3>& H) {
+  return impl_->Factorize(H);
 }
 
 Eigen::MatrixXd CholmodSolver::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {

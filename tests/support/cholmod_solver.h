@@ -19,9 +19,9 @@ class CholmodSolver {
   /// Finds a fill-reducing ordering of the blocks and the structure of the factor.
   void Analyze(const SymmetricBlockMatrix<3>& H);
 
-  /// Factorises H + damping * diag(H). H must have the pattern that was analysed. False if the
+  /// Factorises H, which must have the pattern that was analysed. False if the
   /// matrix is not positive definite to working precision.
-  [[nodiscard]] bool Factorize(const SymmetricBlockMatrix<3>& H, double damping = 0.0);
+  [[nodiscard]] bool Factorize(const SymmetricBlockMatrix<3>& H);
 
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
