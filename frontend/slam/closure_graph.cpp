@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "backend/marginals.h"
 
@@ -47,50 +48,69 @@ double ClosureGraph::Chi2(const Constraint& constraint) const {
   return e.dot(constraint.information * e);
 }
 
-double ClosureGraph::WorstChi2() const {
-  double worst = 0.0;
-  for (const Constraint& c : graph_.constraints) {
-    if (c.robust) worst = std::max(worst, Chi2(c));
+int ClosureGraph::WorstClosure() const {
+  int worst = -1;
+  double worst_chi2 = kMaxChi2;
+  for (std::size_t k = 0; k < graph_.constraints.size(); ++k) {
+    const Constraint& c = graph_.constraints[k];
+    if (!c.robust) continue;
+    const double chi2 = Chi2(c);
+    if (chi2 <= worst_chi2) continue;
+    worst = static_cast<int>(k);
+    worst_chi2 = chi2;
   }
   return worst;
 }
 
-bool ClosureGraph::TryClosures(std::span<const Constraint> closures) {
-  const std::vector<SE2> poses_before = graph_.poses;
-  const std::size_t constraints_before = graph_.constraints.size();
-  const double limit = std::max(kMaxChi2, WorstChi2());
+bool ClosureGraph::TryClosures(std::span<const Constraint> closures,
+                               std::vector<Constraint>* removed) {
+  const PoseGraph before = graph_;
+  int old_ones = static_cast<int>(graph_.constraints.size());
+  int new_ones = static_cast<int>(closures.size());
+  std::vector<Constraint> contradicted;
   graph_.constraints.insert(graph_.constraints.end(), closures.begin(), closures.end());
   optimizer_.Optimize(&graph_);
-  if (WorstChi2() > limit) {
-    graph_.constraints.resize(constraints_before);
-    graph_.poses = poses_before;
-    return false;
+  for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
+    // Old closures give way to new ones only while those are more.
+    --(worst < old_ones ? old_ones : new_ones);
+    contradicted.push_back(graph_.constraints[static_cast<std::size_t>(worst)]);
+    const int given_up = static_cast<int>(before.constraints.size()) - old_ones;
+    if (new_ones == 0 || given_up > new_ones) {
+      graph_ = before;
+      return false;
+    }
+    graph_.constraints.erase(graph_.constraints.begin() + worst);
+    optimizer_.Optimize(&graph_);
   }
-  if (const std::optional<Marginals> marginals = optimizer_.ComputeMarginals()) {
-    covariances_ = marginals->RelativeTo(size() - 1);
-  }
+  if (removed != nullptr) *removed = std::move(contradicted);
+  UpdateCovariances(&optimizer_);
   return true;
 }
 
+void ClosureGraph::UpdateCovariances(Optimizer* optimizer) {
+  if (const std::optional<Marginals> marginals = optimizer->ComputeMarginals()) {
+    covariances_ = marginals->RelativeTo(size() - 1);
+  }
+}
+
 std::vector<Constraint> ClosureGraph::Settle(std::span<const Constraint> links) {
+  std::vector<Constraint> removed;
+  if (size() == 0) return removed;
   graph_.constraints.insert(graph_.constraints.end(), links.begin(), links.end());
   Optimizer optimizer(AtTheEnd());
-  std::vector<Constraint> removed;
-  while (true) {
-    optimizer.Optimize(&graph_);
-    // The worst ones pull the others off: take out those near the worst, then look again.
-    const double limit = std::max(kMaxChi2, 0.5 * WorstChi2());
+  optimizer.Optimize(&graph_);
+  for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
+    // Wrong ones pull their neighbours off: take out those near the worst, then look again.
+    const double limit =
+        std::max(kMaxChi2, 0.5 * Chi2(graph_.constraints[static_cast<std::size_t>(worst)]));
     const auto kept =
         std::stable_partition(graph_.constraints.begin(), graph_.constraints.end(),
                               [&](const Constraint& c) { return !c.robust || Chi2(c) <= limit; });
-    if (kept == graph_.constraints.end()) break;
     removed.insert(removed.end(), kept, graph_.constraints.end());
     graph_.constraints.erase(kept, graph_.constraints.end());
+    optimizer.Optimize(&graph_);
   }
-  if (size() == 0) return removed;
-  if (const std::optional<Marginals> marginals = optimizer.ComputeMarginals()) {
-    covariances_ = marginals->RelativeTo(size() - 1);
-  }
+  UpdateCovariances(&optimizer);
   return removed;
 }
 

@@ -22,10 +22,12 @@ class ClosureGraph {
   /// frame of the new node) says. The first node takes no constraint.
   void AddNode(const SE2& T_map_node, const SE2& T_last_node, const Eigen::Matrix3d& covariance);
 
-  /// Adds closures and optimises. If that leaves a closure off by more than kMaxChi2, be it one of
-  /// them or an older one that was not, all of them go out again and the poses return to where they
-  /// were: false.
-  bool TryClosures(std::span<const Constraint> closures);
+  /// Adds closures and optimises. As long as that leaves some closure, old or new, off by more than
+  /// kMaxChi2, the worst goes out again; old ones only while fewer than the new ones that stay. If
+  /// none of the new ones would stay, the graph is left as it was: false. What went out is put into
+  /// `removed`.
+  bool TryClosures(std::span<const Constraint> closures,
+                   std::vector<Constraint>* removed = nullptr);
 
   /// Ends the run: adds `links`, optimises to convergence, and takes out closures and links that
   /// are off by more than kMaxChi2, the worst first. Returns those.
@@ -40,7 +42,9 @@ class ClosureGraph {
   static constexpr double kMaxChi2 = 25.0;  ///< five sigmas
 
  private:
-  double WorstChi2() const;
+  // Index of the constraint of the closure that is off the most, -1 if none is off too much.
+  int WorstClosure() const;
+  void UpdateCovariances(Optimizer* optimizer);
 
   PoseGraph graph_;
   Optimizer optimizer_;

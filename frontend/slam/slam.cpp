@@ -171,9 +171,11 @@ class Slam::Impl {
       const ClosureRecord& r = closer_.records()[Index(index)];
       closures.push_back({r.from, r.to, r.T_from_to, r.covariance.inverse(), true});
     }
-    const bool kept = graph_.TryClosures(closures);
+    std::vector<Constraint> removed;
+    const bool kept = graph_.TryClosures(closures, &removed);
     for (const Constraint& c : closures) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
     closer_.Decide(believed, kept);
+    for (const Constraint& c : removed) closer_.Reject(c.from, c.to);
     return kept;
   }
 
