@@ -21,6 +21,7 @@ constexpr double kHeapNearest = 4.0;  // metres; any laser sees as far: nearer h
 
 void SensorModel::Learn(const LaserScan& scan) {
   for (float range : scan.ranges) {
+    if (!std::isfinite(range) || range < 0.0F) continue;
     const double clamped = std::min(static_cast<double>(range), kMaxReading);
     const auto bin = static_cast<std::size_t>(clamped / kBinWidth);
     if (bin >= histogram_.size()) histogram_.resize(bin + 1, 0);

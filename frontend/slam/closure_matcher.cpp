@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kReported =
     0.8;  // share of the least score from where on a failure says its score
+constexpr double kReportedSecond =
+    0.7;  // share of the best score from where on a second peak counts
 
 int LevelsFor(double half_width, double resolution) {
   int levels = 2;
@@ -67,6 +69,28 @@ std::optional<LikelihoodTable> TableFor(const LocalMap& map,
   return LikelihoodTable(surfaces, lower, upper, margin, cell, static_cast<float>(sigma), levels);
 }
 
+// Narrows a large window down to the best place in it. False if no place reaches the least score.
+bool SearchCoarsely(const LocalMap& map, std::span<const Eigen::Vector2f> surroundings,
+                    const ClosureMatcherOptions& options, SE2* center, SearchWindow* window,
+                    ClosureMatch* match) {
+  const double cell = options.coarse_resolution;
+  const std::vector<Eigen::Vector2f> points = LimitPoints(surroundings, options.coarse_points);
+  const auto table = TableFor(map, points, *center, *window, cell, options.coarse_sigma);
+  if (!table) return false;
+  const double angle_step = AngleStepFor(points, cell);
+  const CorrelativeSearch search(*table, points, *center, *window, angle_step);
+  const SearchResult best = search.Best(kReported * options.min_score);
+  match->score = best.score;
+  if (best.score < options.min_score) return false;
+  const int cells = static_cast<int>(std::ceil(options.peak_distance / cell));
+  const int steps = static_cast<int>(std::ceil(options.peak_angle / angle_step));
+  match->second_score =
+      search.BestAwayFrom(best.offset, cells, steps, kReportedSecond * best.score).score;
+  *center = best.T_map_robot;
+  *window = {1.5 * cell, 1.5 * cell, 1.5 * angle_step};
+  return true;
+}
+
 }  // namespace
 
 ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
@@ -74,31 +98,18 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
                           const SearchWindow& window, const ClosureMatcherOptions& options) {
   ClosureMatch match;
   if (map.empty() || surroundings.empty()) return match;
-  SearchWindow fine_window{std::min(window.x, options.widest), std::min(window.y, options.widest),
-                           std::min(window.rotation, 3.14)};
   SE2 center = predicted;
-  if (std::max(fine_window.x, fine_window.y) >= options.coarse_from) {
-    const double cell = options.coarse_resolution;
-    const std::vector<Eigen::Vector2f> points = LimitPoints(surroundings, options.coarse_points);
-    const auto table = TableFor(map, points, center, fine_window, cell, options.coarse_sigma);
-    if (!table) return match;
-    const double angle_step = AngleStepFor(points, cell);
-    const CorrelativeSearch search(*table, points, center, fine_window, angle_step);
-    const SearchResult best = search.Best(kReported * options.min_score);
-    match.score = best.score;
-    if (best.score < options.min_score) return match;
-    const SearchResult second = search.BestAwayFrom(
-        best.offset, static_cast<int>(std::ceil(options.peak_distance / cell)),
-        static_cast<int>(std::ceil(options.peak_angle / angle_step)), 0.7 * best.score);
-    match.second_score = second.score;
-    center = best.T_map_robot;
-    fine_window = {1.5 * cell, 1.5 * cell, 1.5 * angle_step};
+  SearchWindow rest{std::min(window.x, options.widest), std::min(window.y, options.widest),
+                    std::min(window.rotation, 3.14)};
+  if (std::max(rest.x, rest.y) >= options.coarse_from &&
+      !SearchCoarsely(map, surroundings, options, &center, &rest, &match)) {
+    return match;
   }
   const double cell = options.fine_resolution;
   const std::vector<Eigen::Vector2f> points = ThinPoints(scan.hits, static_cast<float>(cell));
-  const auto table = TableFor(map, points, center, fine_window, cell, options.fine_sigma);
+  const auto table = TableFor(map, points, center, rest, cell, options.fine_sigma);
   if (!table) return match;
-  const CorrelativeSearch search(*table, points, center, fine_window, AngleStepFor(points, cell));
+  const CorrelativeSearch search(*table, points, center, rest, AngleStepFor(points, cell));
   const SearchResult best = search.Best(kReported * options.min_score);
   match.score = best.score;
   if (best.score < options.min_score) return match;

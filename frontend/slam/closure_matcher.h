@@ -16,7 +16,7 @@ struct ClosureMatcherOptions {
   double fine_resolution = 0.05;    ///< of the likelihood table for small windows, metres
   double coarse_resolution = 0.10;  ///< ... for large ones, metres
   double fine_sigma = 0.07;         ///< reach of a reference point in the table, metres
-  double coarse_sigma = 0.10;
+  double coarse_sigma = 0.10;       ///< ... for large windows, metres
   double coarse_from = 1.0;         ///< windows from this half width on are large, metres
   std::size_t coarse_points = 300;  ///< searched with in large windows at most
   double widest = 25.0;             ///< half width that is searched at most, metres
@@ -33,8 +33,8 @@ struct ClosureMatch {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< robot frame, order (x, y, theta)
   double score = 0.0;                                    ///< best of the search, 0..1
   double second_score = 0.0;                             ///< best away from it, 0..1
-  double inlier_share = 0.0;
-  double denied_share = 0.0;  ///< see Visibility
+  double inlier_share = 0.0;                             ///< see RefinedMatch
+  double denied_share = 0.0;                             ///< see Visibility
 };
 
 /// Finds `scan` in `map` within `window` around `predicted`. `surroundings` are the points to

@@ -19,11 +19,10 @@ struct LoopCloserOptions {
   int same_pass = 5;            ///< candidates this close along the path are one pass
   double window_margin = 0.15;  ///< searched beyond the gate, metres ...
   double window_angle_margin = 0.05;  ///< ... and radians
-  int max_candidates = 3;             ///< places matched for each node
-  double map_path = 10.0;    ///< nodes this much travel before and after make the map, metres
-  double map_radius = 25.0;  ///< surfaces farther from the old node are left out, metres
-  double surroundings_path =
-      4.0;  ///< travel that is searched with where the window is large, metres
+  int max_candidates = 3;             ///< passes matched for each node
+  double map_path = 10.0;          ///< nodes this much travel before and after make the map, metres
+  double map_radius = 25.0;        ///< surfaces farther from the old node are left out, metres
+  double surroundings_path = 4.0;  ///< of travel, searched with in large windows, metres
   double surroundings_from = 1.0;  ///< windows from this half width on are large, metres
   double max_second_share = 0.92;  ///< a second peak this close to the best makes it ambiguous
   double max_denied_share = 0.3;   ///< of the walls in view that may have vanished, 0..1

@@ -1,10 +1,13 @@
 #include "frontend/slam/slam.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "backend/base/error.h"
 #include "backend/normal_equations.h"
 #include "frontend/matching/sensor_model.h"
 #include "frontend/slam/closure_graph.h"
@@ -41,6 +44,10 @@ class Slam::Impl {
   }
 
   TrackedScan AddScan(const Observation& observation) {
+    if (!observation.T_odom_robot.coordinates().allFinite()) {
+      throw Error(ErrorCode::kInput,
+                  fmt::format("odometry of scan {} is not finite", scans_.size()));
+    }
     const SE2 motion =
         scans_.empty() ? SE2() : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
     ScanEntry entry;

@@ -49,7 +49,9 @@ class Slam {
   Slam(Slam&&) noexcept;
   Slam& operator=(Slam&&) noexcept;
 
-  /// Takes the next scan of the log, in order of acquisition.
+  /// Takes the next scan of the log, in order of acquisition. A range of infinity is a
+  /// beam without return, NaN and negative ones say nothing. Throws Error (kInput) if the odometry
+  /// is not finite; the scan is then not taken.
   TrackedScan AddScan(const Observation& observation);
 
   /// Ends the run: links overlapping neighbours, optimises, refines. Call once, after the last

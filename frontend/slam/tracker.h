@@ -14,16 +14,16 @@ namespace loopgrid {
 struct TrackerOptions {
   OdometryNoise odometry;
   RefinerOptions refiner;
-  double table_resolution = 0.05;  ///< metres
-  double table_sigma = 0.07;       ///< metres
+  double table_resolution = 0.05;  ///< of the likelihood table, metres
+  double table_sigma = 0.07;       ///< reach of a reference point in it, metres
   double map_radius = 30.0;        ///< surfaces farther from the robot are left out, metres
   double min_score = 0.35;         ///< of the correlative search, 0..1
   double min_inlier_share = 0.25;  ///< of the refined match, 0..1
   int min_points = 20;             ///< scans with fewer hits are not matched
   double lost_reach = 1.0;         ///< half width searched when the odometry was no help, metres
-  double lost_min_score = 0.5;     ///< what a match must reach then, 0..1 ...
-  double lost_min_inlier_share = 0.65;
-  double lost_max_second = 0.8;  ///< ... and no other place may reach this share of it
+  double lost_min_score = 0.5;     ///< what the search must reach then, 0..1 ...
+  double lost_min_inlier_share = 0.65;  ///< ... and the refined one
+  double lost_max_second = 0.8;         ///< ... and no other place may reach this share of it
 };
 
 /// Where a scan is in the local map.
