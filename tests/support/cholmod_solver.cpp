@@ -184,9 +184,7 @@ CholmodSolver& CholmodSolver::operator=(CholmodSolver&&) noexcept = default;
 
 void CholmodSolver::Analyze(const SymmetricBlockMatrix<3>& H) { impl_->Analyze(H); }
 
-bool CholmodSolver::Factorize(const SymmetricBlockMatrix<3>& H) {
-  return impl_->Factorize(H);
-}
+bool CholmodSolver::Factorize(const SymmetricBlockMatrix<3>& H) { return impl_->Factorize(H); }
 
 Eigen::MatrixXd CholmodSolver::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
   return impl_->Solve(rhs);
