@@ -30,6 +30,7 @@ ScanAt ScansOf(const Slam& slam) {
 /// Where odometry alone would have put the scans, with the first one where it is on the map.
 std::vector<SE2> OdometryPoses(const Slam& slam, const std::vector<SE2>& poses) {
   std::vector<SE2> odometry;
+  odometry.reserve(poses.size());
   const SE2 T_map_odom = poses.front() * slam.scan_odometry(0).Inverse();
   for (int scan = 0; scan < slam.scan_count(); ++scan) {
     odometry.push_back(T_map_odom * slam.scan_odometry(scan));

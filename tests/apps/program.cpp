@@ -21,6 +21,7 @@ void Require(bool good, const char* what) {
   std::vector<std::string> copies = arguments;
   copies.insert(copies.begin(), LOOPGRID_PROGRAM);
   std::vector<char*> pointers;
+  pointers.reserve(copies.size() + 1);
   for (std::string& argument : copies) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   execv(LOOPGRID_PROGRAM, pointers.data());
