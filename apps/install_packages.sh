@@ -6,14 +6,14 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build
   libeigen3-dev libsuitesparse-dev libfmt-dev libcli11-dev nlohmann-json3-dev
-  libboost-dev zlib1g-dev
+  zlib1g-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
-  libmrpt-obs-dev libmrpt-maps-dev mrpt-common
+  libmrpt-obs-dev mrpt-common
 )
 if [[ "${1:-}" == tests ]]; then
   packages+=(
     clang libclang-rt-14-dev clang-format
-    libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
+    libgtest-dev libgmock-dev libbenchmark-dev
   )
 fi
 
