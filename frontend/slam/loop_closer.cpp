@@ -221,7 +221,9 @@ ClosureRecord* LoopCloser::FindAccepted(int from, int to) {
   const auto first = std::lower_bound(records_.begin(), records_.end(), to,
                                       [](const ClosureRecord& r, int node) { return r.to < node; });
   for (auto it = first; it != records_.end() && it->to == to; ++it) {
-    if (it->from == from && it->outcome != ClosureOutcome::kRejected) return &*it;
+    const bool in_graph =
+        it->outcome == ClosureOutcome::kAccepted || it->outcome == ClosureOutcome::kPending;
+    if (it->from == from && in_graph) return &*it;
   }
   return nullptr;
 }
