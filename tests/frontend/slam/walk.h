@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "frontend/slam/closure_graph.h"
+#include "frontend/slam/nodes.h"
+#include "tests/support/rooms.h"
+
+namespace loopgrid::test_support {
+
+/// Nodes with their scans, as SLAM has them, for tests of what works on them.
+class Walk {
+ public:
+  Walk() { nodes_.graph = &graph_.graph(); }
+  Walk(const Walk&) = delete;
+  Walk& operator=(const Walk&) = delete;
+
+  /// Adds a node `step` after the last one, known to `sigma` metres and a quarter of it in radians.
+  void Add(const SE2& step, PointScan scan, double sigma = 0.02) {
+    const double variance = sigma * sigma;
+    const SE2 last = nodes_.size() > 0 ? nodes_.pose(nodes_.size() - 1) : SE2();
+    graph_.AddNode(last * step, step,
+                   Eigen::Vector3d(variance, variance, variance / 16.0).asDiagonal());
+    scans_.push_back(std::make_unique<PointScan>(std::move(scan)));
+    nodes_.scans.push_back(scans_.back().get());
+  }
+
+  /// Adds the nodes at `truth`, seen by `laser`; each step is measured with the error `drift`.
+  void Follow(const World& world, const std::vector<SE2>& truth, const SE2& drift = SE2(),
+              const SimulatedLaser& laser = {}) {
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const SE2 step = i == 0 ? truth[0] : truth[i - 1].Inverse() * truth[i] * drift;
+      Add(step, ScanFrom(world, truth[i], laser, static_cast<std::uint32_t>(i)));
+    }
+  }
+
+  const Nodes& nodes() const { return nodes_; }
+  ClosureGraph& graph() { return graph_; }
+
+ private:
+  ClosureGraph graph_;
+  std::vector<std::unique_ptr<PointScan>> scans_;
+  Nodes nodes_;
+};
+
+inline constexpr int kNodesARound = 24;
+
+/// Round and round in DistinctiveRoom(), 24 nodes of half a metre a round.
+inline std::vector<SE2> RoundWalk(int nodes) {
+  std::vector<SE2> poses;
+  for (int i = 0; i < nodes; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kNodesARound;
+    poses.emplace_back(1.9 * std::cos(angle), 1.9 * std::sin(angle),
+                       angle + 0.5 * std::numbers::pi);
+  }
+  return poses;
+}
+
+}  // namespace loopgrid::test_support
