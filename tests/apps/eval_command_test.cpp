@@ -1,0 +1,96 @@
+// `loopgrid eval` as its user meets it. The metrics themselves are tested in tests/frontend.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/apps/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace loopgrid {
+namespace {
+
+using nlohmann::json;
+using test_support::ProgramResult;
+using test_support::RunProgram;
+using test_support::TemporaryDirectory;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+class EvalCommandTest : public ::testing::Test {
+ protected:
+  /// What eval says about `estimate_` compared with a file of the given content.
+  ProgramResult Eval(const std::string& reference, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"eval", estimate_, folder_.Write("reference", reference)});
+    return RunProgram(more);
+  }
+
+  TemporaryDirectory folder_;
+  // Along the x axis, a metre a second.
+  std::string estimate_ = folder_.Write("estimate.tum",
+                                        "# time x y z qx qy qz qw\n"
+                                        "10 0 0 0 0 0 0 1\n"
+                                        "11 1 0 0 0 0 0 1\n"
+                                        "12 2 0 0 0 0 0 1\n");
+};
+
+TEST_F(EvalCommandTest, KnowsRelationsByTheirContent) {
+  // The first one is met exactly; the second one is half a metre and 0.1 radians off; of the third
+  // and fourth one a time lies between and outside of the poses.
+  const std::string relations =
+      "10 11 1 0 0 0 0 0\n"
+      "10 12 2.5 0 0 0 0 0.1\n"
+      "10 11.5 1.5 0 0 0 0 0\n"
+      "10 13 3 0 0 0 0 0\n";
+  const ProgramResult text = Eval(relations);
+  EXPECT_EQ(text.status, 0);
+  EXPECT_THAT(text.errors, IsEmpty());
+  EXPECT_THAT(text.output, AllOf(StartsWith("exact         2 relations"), HasSubstr("0.2500 +-")));
+  const json result = json::parse(Eval(relations, {"--json"}).output);
+  EXPECT_EQ(result["metric"], "relations");
+  EXPECT_EQ(result["exact"]["count"], 2);
+  EXPECT_NEAR(result["exact"]["translation_m"]["mean"], 0.25, 1e-9);
+  EXPECT_NEAR(result["exact"]["rotation_deg"]["mean"], 0.05 * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_EQ(result["interpolated"]["count"], 1);
+  EXPECT_EQ(result["outside"], 1);
+}
+
+TEST_F(EvalCommandTest, KnowsATrajectoryByItsContentAndAlignsIt) {
+  // The same way, elsewhere and turned by 90 degrees.
+  const std::string reference =
+      "10 5 5 0 0 0 0.70710678 0.70710678\n"
+      "11 5 6 0 0 0 0.70710678 0.70710678\n"
+      "12 5 7 0 0 0 0.70710678 0.70710678\n"
+      "20 5 8 0 0 0 0.70710678 0.70710678\n";
+  EXPECT_THAT(Eval(reference).output, StartsWith("compared      3 poses"));
+  const json result = json::parse(Eval(reference, {"--json"}).output);
+  EXPECT_EQ(result["metric"], "trajectory");
+  EXPECT_EQ(result["count"], 3);
+  EXPECT_EQ(result["unmatched"], 1);
+  EXPECT_NEAR(result["translation_m"]["rms"], 0.0, 1e-6);
+  EXPECT_NEAR(result["rotation_deg"]["max"], 0.0, 1e-6);
+  EXPECT_NEAR(result["alignment"]["theta"], 0.5 * std::numbers::pi, 1e-6);
+}
+
+TEST_F(EvalCommandTest, WhatCannotBeComparedIsAnInputError) {
+  const auto expect_refusal = [](const ProgramResult& result, const std::string& reason) {
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.output, IsEmpty());
+    EXPECT_THAT(result.errors, AllOf(StartsWith("loopgrid: "), HasSubstr(reason)));
+  };
+  expect_refusal(Eval("110 111 1 0 0 0 0 0\n"), "no relation lies within the times of");
+  expect_refusal(Eval("110 0 0 0 0 0 0 1\n"), "no pose has the time of one of");
+  expect_refusal(Eval(""), "reference: ");
+  expect_refusal(Eval("10 11 1 0 0 0 0 0\n10 11 one 0 0 0 0 0\n"), "reference:2: ");
+  expect_refusal(RunProgram({"eval", estimate_, folder_.File("none")}), "none: ");
+  expect_refusal(RunProgram({"eval", folder_.File(""), estimate_}), folder_.File(""));
+}
+
+}  // namespace
+}  // namespace loopgrid
