@@ -162,5 +162,31 @@ TEST(Marginals, RespectSeveralFixedNodes) {
   EXPECT_TRUE((*relative)[10].isApprox(block, 1e-9));
 }
 
+TEST(ExtendRelativeCovariances, GivesWhatANewFactorisationWould) {
+  for (unsigned seed = 71; seed < 77; ++seed) {
+    SCOPED_TRACE(seed);
+    // A graph with closures, then a tail of single links, each met exactly by its new node.
+    PoseGraph graph = test_support::RandomGraph(25, seed % 2 == 0 ? 12 : 0, seed);
+    const PoseGraph tail = test_support::RandomGraph(12, 0, seed + 100);
+    auto covariances = RelativeCovariances(graph, 24);
+    ASSERT_TRUE(covariances);
+    for (Constraint link : tail.constraints) {
+      link.from += 24;
+      link.to += 24;
+      graph.poses.push_back(graph.poses.back() * link.T_from_to);
+      graph.constraints.push_back(link);
+      ExtendRelativeCovariances(graph, link, &*covariances);
+      const auto expected = RelativeCovariances(graph, link.to);
+      ASSERT_TRUE(expected);
+      ASSERT_EQ(covariances->size(), graph.poses.size());
+      for (std::size_t i = 0; i < expected->size(); ++i) {
+        EXPECT_LE(((*covariances)[i] - (*expected)[i]).norm(), 1e-9 * (*expected)[i].norm())
+            << i << " relative to " << link.to;
+      }
+    }
+    EXPECT_TRUE(covariances->back().isZero(0.0));
+  }
+}
+
 }  // namespace
 }  // namespace loopgrid
