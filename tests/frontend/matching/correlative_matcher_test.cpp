@@ -53,8 +53,8 @@ Points RandomWalls(std::mt19937* random) {
   Points points;
   const int walls = static_cast<int>((*random)() % 4) + 1;
   for (int w = 0; w < walls; ++w) {
-    const Eigen::Vector2f from(Uniform(-2.0F, 2.0F, random), Uniform(-2.0F, 2.0F, random));
-    const Eigen::Vector2f to(Uniform(-2.0F, 2.0F, random), Uniform(-2.0F, 2.0F, random));
+    const Eigen::Vector2f from{Uniform(-2.0F, 2.0F, random), Uniform(-2.0F, 2.0F, random)};
+    const Eigen::Vector2f to{Uniform(-2.0F, 2.0F, random), Uniform(-2.0F, 2.0F, random)};
     const int count = static_cast<int>((*random)() % 25) + 1;
     for (int i = 0; i < count; ++i) {
       points.emplace_back(from + (to - from) * (static_cast<float>(i) / static_cast<float>(count)));
@@ -74,7 +74,7 @@ Problem RandomProblem(unsigned seed) {
   const Points reference = RandomWalls(&random);
   Problem problem{.table = TableOf(reference, window, resolution, 0.08F, levels),
                   .points = {},
-                  .center = SE2(Uniform(-5, 5, &random), Uniform(-5, 5, &random), seed),
+                  .center = SE2{Uniform(-5, 5, &random), Uniform(-5, 5, &random), 1.0 * seed},
                   .window = window};
   problem.angle_step = OneOf({0.01, 0.02}, &random);
   if (random() % 2 == 0) problem.prior = {0.1, 0.03, OneOf({0.02, 0.3}, &random)};
@@ -85,7 +85,7 @@ Problem RandomProblem(unsigned seed) {
     problem.points.emplace_back((T_robot_map * p.cast<double>()).cast<float>());
   }
   for (int strays = static_cast<int>(random() % 10); strays >= 0; --strays) {
-    problem.points.emplace_back(Uniform(-9, 9, &random), Uniform(-9, 9, &random));
+    problem.points.push_back({Uniform(-9, 9, &random), Uniform(-9, 9, &random)});
   }
   return problem;
 }

@@ -28,7 +28,7 @@ LaserScan RoomScan(const std::vector<float>& values, int missing, PortableRandom
   SimulatedLaser laser;
   laser.beams = beams;
   laser.angle_step = kPi / beams;
-  const SE2 pose(random->Uniform(-2.0, 0.0), random->Uniform(-2.0, 0.0), random->Uniform(-3, 3));
+  const SE2 pose{random->Uniform(-2.0, 0.0), random->Uniform(-2.0, 0.0), random->Uniform(-3, 3)};
   LaserScan scan = SimulateScan(DistinctiveRoom(), pose, laser, random);
   const auto first = static_cast<std::size_t>(random->Uniform(0.0, beams - missing));
   for (std::size_t i = first; i < first + static_cast<std::size_t>(missing); ++i) {

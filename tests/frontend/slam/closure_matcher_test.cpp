@@ -37,10 +37,10 @@ TEST(MatchClosure, FindsAScanInSmallAndLargeWindows) {
     for (const SearchWindow& window : windows) {
       SCOPED_TRACE(seed);
       PortableRandom random(seed);
-      const SE2 truth(random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3));
-      const SE2 predicted(truth.x() + 0.9 * random.Uniform(-window.x, window.x),
+      const SE2 truth{random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3)};
+      const SE2 predicted{truth.x() + 0.9 * random.Uniform(-window.x, window.x),
                           truth.y() + 0.9 * random.Uniform(-window.y, window.y),
-                          truth.theta() + 0.9 * random.Uniform(-window.rotation, window.rotation));
+                          truth.theta() + 0.9 * random.Uniform(-window.rotation, window.rotation)};
       const PointScan scan = ScanFrom(DistinctiveRoom(), truth, SimulatedLaser{}, seed);
       const ClosureMatch match = Match(map, scan, predicted, window);
       ASSERT_TRUE(match.found);

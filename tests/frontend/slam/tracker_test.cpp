@@ -89,7 +89,7 @@ int FoundOfFifty(double metres, double radians) {
   int found = 0;
   for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     PortableRandom random(seed);
-    const SE2 start(random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3));
+    const SE2 start{random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3)};
     const SE2 truth = start * SE2(0.1, 0.02, 0.05);
     const double way = random.Uniform(-3.0, 3.0);
     const SE2 jump(metres * std::cos(way), metres * std::sin(way), way > 0.0 ? radians : -radians);
