@@ -4,19 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 
 #include "tests/apps/program.h"
+#include "tests/support/recordings.h"
 #include "tests/support/temporary_directory.h"
 
 namespace loopgrid {
 namespace {
 
 using nlohmann::json;
+using test_support::MrptDataset;
 using test_support::ProgramResult;
 using test_support::ReadFile;
 using test_support::RunProgram;
@@ -61,11 +62,10 @@ class RecordingTest : public ::testing::TestWithParam<Recording> {
 
 TEST_P(RecordingTest, IsMappedWellWithDefaults) {
   const Recording& recording = GetParam();
-  const char* data = std::getenv("LOOPGRID_DATA");
-  if (data == nullptr) GTEST_SKIP() << "LOOPGRID_DATA is not set: no recordings to test with";
-  const std::string logs = std::string(data) + "/logs/";
+  LOOPGRID_REQUIRE_RECORDING(log, std::string("logs/") + recording.log);
+  const std::string logs = std::filesystem::path(log).parent_path().string() + "/";
 
-  const ProgramResult run = RunProgram({"run", logs + recording.log, "--out", folder_.File("out")});
+  const ProgramResult run = RunProgram({"run", log, "--out", folder_.File("out")});
   ASSERT_EQ(run.status, 0) << run.errors;
   const json report = json::parse(ReadFile(folder_.File("out/report.json")));
   EXPECT_EQ(report["scans"], recording.scans);
@@ -137,8 +137,7 @@ TEST_F(SimulatedOffice, CorrectedLogIsALogOfTheSameScans) {
 }
 
 TEST(DebianRecording, IsMappedWithDefaults) {
-  const std::string log =
-      "/usr/share/mrpt/datasets/2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";
+  const std::string log = MrptDataset("2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog");
   if (!std::filesystem::exists(log)) GTEST_SKIP() << "mrpt-common is not installed";
   const TemporaryDirectory folder;
   const ProgramResult run = RunProgram({"run", log, "--out", folder.File("out")});
