@@ -13,8 +13,10 @@ struct MatchCovarianceOptions {
   /// Log-likelihood of a perfect hit over that of a miss. Below 1 because neighbouring beams err
   /// together: calibrated so that chi-square of closed loops comes out near its expectation.
   double hit_log_likelihood = 4.0;
-  double narrowest = 0.002;  ///< standard deviation the lattice is laid for at least, metres ...
-  double widest = 0.4;       ///< ... and at most: beyond, the match knows nothing
+  /// Standard deviation the lattice is laid for at least, metres ... (finer, it lies within one or
+  /// two cells of the table, where the score is flat and looks as if nothing were known.)
+  double narrowest = 0.02;
+  double widest = 0.4;  ///< ... and at most: beyond, the match knows nothing
 };
 
 /// What a match knows, from the shape of its score: the inverse of Olson's covariance
