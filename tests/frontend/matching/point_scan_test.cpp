@@ -12,8 +12,6 @@
 namespace loopgrid {
 namespace {
 
-using test_support::BareCorridor;
-using test_support::CastRay;
 using test_support::DistinctiveRoom;
 using test_support::ExactLaser;
 using test_support::ScanFrom;

@@ -10,7 +10,6 @@
 namespace loopgrid {
 namespace {
 
-using test_support::BareCorridor;
 using test_support::DistinctiveRoom;
 using test_support::ExactLaser;
 using test_support::MapFrom;

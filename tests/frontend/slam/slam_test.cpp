@@ -22,7 +22,6 @@ namespace {
 
 using test_support::DistinctiveRoom;
 using test_support::SimulatedRun;
-using test_support::World;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
