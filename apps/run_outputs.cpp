@@ -44,11 +44,11 @@ std::vector<SE2> NodesAmong(const Slam& slam, const std::vector<SE2>& scan_poses
   return nodes;
 }
 
-std::vector<GraphEdge> EdgesOf(const PoseGraph& graph) {
+std::vector<GraphEdge> EdgesOf(const PoseGraph<SE2>& graph) {
   // Nodes that are no further apart than this in the order of the log met on the way, not again.
   constexpr int kOnTheWay = 10;
   std::vector<GraphEdge> edges;
-  for (const Constraint& constraint : graph.constraints) {
+  for (const Constraint<SE2>& constraint : graph.constraints) {
     const bool on_the_way = std::abs(constraint.to - constraint.from) <= kOnTheWay;
     edges.push_back(
         {constraint.from, constraint.to, on_the_way ? EdgeKind::kSequential : EdgeKind::kClosure});

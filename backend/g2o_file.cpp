@@ -105,7 +105,7 @@ G2oGraph G2oReader::Read() {
   if (result_.ids.empty()) {
     throw Error(ErrorCode::kInput, lines_.path() + ": no VERTEX_SE2 line, expected a g2o file");
   }
-  PoseGraph& graph = result_.graph;
+  PoseGraph<SE2>& graph = result_.graph;
   for (std::size_t k = 0; k < ends_.size(); ++k) {
     graph.constraints[k].from = Resolve(ends_[k][0]);
     graph.constraints[k].to = Resolve(ends_[k][1]);
@@ -136,7 +136,7 @@ void G2oReader::ReadEdge(FieldCursor* fields) {
   const auto upper = ReadNumbers<6>(fields, kExpected);
   RequireEnd(fields);
   if (from == to) throw lines_.ErrorHere(fmt::format("the edge joins vertex {} to itself", from));
-  Constraint constraint;
+  Constraint<SE2> constraint;
   constraint.T_from_to = SE2(x, y, theta);
   constraint.information << upper[0], upper[1], upper[2],  //
       upper[1], upper[3], upper[4],                        //
@@ -171,7 +171,7 @@ int G2oReader::Resolve(const Mention& mention) const {
 
 G2oGraph ReadG2o(const std::string& path) { return G2oReader(path).Read(); }
 
-std::string FormatG2o(const PoseGraph& graph, const std::vector<std::int64_t>& ids) {
+std::string FormatG2o(const PoseGraph<SE2>& graph, const std::vector<std::int64_t>& ids) {
   const auto id = [&](int node) {
     return ids.empty() ? std::int64_t{node} : ids[static_cast<std::size_t>(node)];
   };
@@ -182,7 +182,7 @@ std::string FormatG2o(const PoseGraph& graph, const std::vector<std::int64_t>& i
     fmt::format_to(out, "VERTEX_SE2 {} {} {} {}\n", id(node), pose.x(), pose.y(), pose.theta());
   }
   for (int node : graph.fixed) fmt::format_to(out, "FIX {}\n", id(node));
-  for (const Constraint& constraint : graph.constraints) {
+  for (const Constraint<SE2>& constraint : graph.constraints) {
     const SE2& T = constraint.T_from_to;
     const Eigen::Matrix3d& I = constraint.information;
     fmt::format_to(out, "EDGE_SE2 {} {} {} {} {} {} {} {} {} {} {}\n", id(constraint.from),
@@ -192,7 +192,7 @@ std::string FormatG2o(const PoseGraph& graph, const std::vector<std::int64_t>& i
   return text;
 }
 
-void WriteG2o(const std::string& path, const PoseGraph& graph,
+void WriteG2o(const std::string& path, const PoseGraph<SE2>& graph,
               const std::vector<std::int64_t>& ids) {
   WriteFileAtomically(path, FormatG2o(graph, ids));
 }

@@ -10,7 +10,7 @@ namespace loopgrid {
 
 /// A pose graph and the names its nodes have in a file.
 struct G2oGraph {
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   std::vector<std::int64_t> ids;  ///< of the vertices, one a node
 };
 
@@ -24,10 +24,10 @@ G2oGraph ReadG2o(const std::string& path);
 /// The text of a g2o file: vertices, fixed ones, edges, numbers with all their digits. `ids` may be
 /// empty (the nodes' indices are used). What the format has no place for, Constraint::robust, is
 /// left out.
-std::string FormatG2o(const PoseGraph& graph, const std::vector<std::int64_t>& ids = {});
+std::string FormatG2o(const PoseGraph<SE2>& graph, const std::vector<std::int64_t>& ids = {});
 
 /// Writes it, whole or not at all. Throws Error (kOutput).
-void WriteG2o(const std::string& path, const PoseGraph& graph,
+void WriteG2o(const std::string& path, const PoseGraph<SE2>& graph,
               const std::vector<std::int64_t>& ids = {});
 
 }  // namespace loopgrid

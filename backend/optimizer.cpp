@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "backend/base/error.h"
 
 namespace loopgrid {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Levenberg-Marquardt's lambda multiplies the Hessian's diagonal, so these have no unit.
 constexpr double kFirstDamping = 1e-5;
@@ -24,9 +28,21 @@ constexpr double kSmallestScale = 1e-9;
 constexpr double kGoodModel = 0.1;
 constexpr double kSlow = 0.1;
 
-void RequireAtLeastZero(const char* field, double value) {
-  if (std::isfinite(value) && value >= 0.0) return;
-  throw Error(ErrorCode::kUsage, fmt::format("{} is {}, expected at least 0", field, value));
+// The dog leg's trust region grows when F falls by more than the first share of what was promised,
+// shrinks below the second.
+constexpr double kTrusted = 0.75;
+constexpr double kDistrusted = 0.25;
+constexpr double kSmallestRadius = 1e-12;
+
+// The square of a graduated loss's width falls by this factor at a time (Yang et al. 2020).
+constexpr double kGraduation = 1.4;
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+void RequireAtLeast(double bound, const char* field, double value) {
+  if (std::isfinite(value) && value >= bound) return;
+  throw Error(ErrorCode::kUsage,
+              fmt::format("{} is {}, expected at least {}", field, value, bound));
 }
 
 /// Levenberg-Marquardt's lambda after a step that failed, and after one that did not.
@@ -37,16 +53,44 @@ double Weaker(double damping) {
   return weaker < kFirstDamping ? 0.0 : weaker;
 }
 
+/// The largest e^T Omega e of the constraints and observations that may be wrong.
+template <typename Pose>
+double LargestRobustChi2(const PoseGraph<Pose>& graph) {
+  double largest = 0.0;
+  const auto look_at = [&](const auto& edges) {
+    for (const auto& edge : edges) {
+      if (edge.robust) largest = std::max(largest, Chi2(graph, edge));
+    }
+  };
+  look_at(graph.constraints);
+  look_at(graph.observations);
+  return largest;
+}
+
+/// Whether what has grown still begins as it was; bit for bit.
+template <typename Pose>
+bool BeginsWith(const std::vector<Pose>& grown, const std::vector<Pose>& start) {
+  return grown.size() >= start.size() &&
+         std::equal(start.begin(), start.end(), grown.begin(), [](const Pose& a, const Pose& b) {
+           if constexpr (requires { a.coordinates(); }) {
+             return a.coordinates() == b.coordinates();
+           } else {
+             return a == b;
+           }
+         });
+}
+
 }  // namespace
 
 void OptimizerOptions::Validate() const {
-  if (max_iterations < 0) {
-    throw Error(ErrorCode::kUsage,
-                fmt::format("max_iterations is {}, expected at least 0", max_iterations));
-  }
-  RequireAtLeastZero("relative_decrease", relative_decrease);
-  RequireAtLeastZero("absolute_decrease", absolute_decrease);
+  RequireAtLeast(0.0, "max_iterations", max_iterations);
+  RequireAtLeast(0.0, "relative_decrease", relative_decrease);
+  RequireAtLeast(0.0, "absolute_decrease", absolute_decrease);
+  RequireAtLeast(1.0, "threads", threads);
   loss.Validate();
+  if (graduated && loss.kind != LossKind::kGemanMcClure) {
+    throw Error(ErrorCode::kUsage, "graduated is set, expected a Geman-McClure loss with it");
+  }
 }
 
 const char* ToString(Termination termination) {
@@ -57,6 +101,8 @@ const char* ToString(Termination termination) {
       return "iterations used up";
     case Termination::kStalled:
       return "no step lowers the error";
+    case Termination::kDiverged:
+      return "diverged";
     case Termination::kIndefinite:
       return "Hessian not positive definite";
     case Termination::kNothingToMove:
@@ -65,39 +111,141 @@ const char* ToString(Termination termination) {
   return "unknown";
 }
 
-Optimizer::Optimizer(const OptimizerOptions& options) : options_(options) { options_.Validate(); }
+template <typename Pose>
+Optimizer<Pose>::Optimizer(const OptimizerOptions& options)
+    : options_(options),
+      objective_{options.loss, options.parametrization},
+      workers_(std::max(1, options.threads)) {
+  options_.Validate();
+}
 
-OptimizerResult Optimizer::Optimize(PoseGraph* graph) {
-  Validate(*graph);
-  if (equations_.SetStructure(*graph)) factor_.Analyze(equations_.hessian());
+template <typename Pose>
+OptimizerResult Optimizer<Pose>::Optimize(PoseGraph<Pose>* graph) {
+  start_ = std::chrono::steady_clock::now();
+  loopgrid::Validate(*graph);
   OptimizerResult result;
-  result.initial_error = Linearize(*graph);
-  result.final_error = result.initial_error;
-  if (equations_.variable_count() > 0) Iterate(graph, &result);
-  poses_ = graph->poses;
+  if (double error = 0.0; IsAtOptimum(*graph, &error)) {
+    result.initial_error = result.final_error = error;
+    result.termination = Termination::kConverged;
+    Record(*graph, &result);
+    return result;
+  }
+  result = options_.graduated ? MinimizeGraduated(graph) : Minimize(graph);
+  optimum_ = {result.termination == Termination::kConverged,
+              result.final_error,
+              StateOf(*graph),
+              graph->fixed,
+              graph->constraints.size(),
+              graph->observations.size()};
   return result;
 }
 
-void Optimizer::Iterate(PoseGraph* graph, OptimizerResult* result) {
+// What has been added can lower F by no more than what it adds to it: the rest is at its minimum.
+template <typename Pose>
+bool Optimizer<Pose>::IsAtOptimum(const PoseGraph<Pose>& graph, double* error) const {
+  if (!optimum_.is_minimum || graph.fixed != optimum_.fixed ||
+      graph.constraints.size() < optimum_.constraints ||
+      graph.observations.size() < optimum_.observations ||
+      !BeginsWith(graph.poses, optimum_.state.poses) ||
+      !BeginsWith(graph.landmarks, optimum_.state.landmarks)) {
+    return false;
+  }
+  const std::span<const Constraint<Pose>> constraints(graph.constraints);
+  const std::span<const LandmarkObservation<Pose>> observations(graph.observations);
+  const double old_error = TotalError(graph, constraints.first(optimum_.constraints),
+                                      observations.first(optimum_.observations), objective_);
+  if (old_error != optimum_.error) return false;
+  const double new_error = TotalError(graph, constraints.subspan(optimum_.constraints),
+                                      observations.subspan(optimum_.observations), objective_);
+  *error = old_error + new_error;
+  return new_error <= std::max(options_.absolute_decrease, options_.relative_decrease * *error);
+}
+
+template <typename Pose>
+OptimizerResult Optimizer<Pose>::Minimize(PoseGraph<Pose>* graph) {
+  OptimizerResult result;
+  SetStructure(*graph);
+  result.initial_error = Linearize(*graph);
+  result.final_error = result.initial_error;
+  Record(*graph, &result);
+  if (equations_.variable_count() > 0) Iterate(graph, &result);
+  return result;
+}
+
+template <typename Pose>
+OptimizerResult Optimizer<Pose>::MinimizeGraduated(PoseGraph<Pose>* graph) {
+  const State start = StateOf(*graph);
+  const double initial_error = TotalError(*graph, objective_);
+  OptimizerResult result;
+  const auto minimize = [&](const RobustLoss& loss) {
+    objective_.loss = loss;
+    OptimizerResult stage = Minimize(graph);
+    result.iterations += stage.iterations;
+    result.uphill_steps += stage.uphill_steps;
+    result.damping = stage.damping;
+    result.termination = stage.termination;
+    result.trace.insert(result.trace.end(), stage.trace.begin(), stage.trace.end());
+    return stage.final_error;
+  };
+  minimize({LossKind::kQuadratic, options_.loss.width});
+  double width = std::sqrt(2.0 * LargestRobustChi2(*graph));
+  for (; width > options_.loss.width; width /= std::sqrt(kGraduation)) {
+    minimize({LossKind::kGemanMcClure, width});
+  }
+  result.final_error = minimize(options_.loss);
+  result.initial_error = initial_error;
+  if (result.final_error > initial_error) {
+    Restore(start, graph);
+    result.final_error = initial_error;
+    result.termination = Termination::kDiverged;
+  }
+  return result;
+}
+
+template <typename Pose>
+void Optimizer<Pose>::SetStructure(const PoseGraph<Pose>& graph) {
+  if (equations_.SetStructure(graph)) factor_.Analyze(equations_.hessian());
+}
+
+template <typename Pose>
+void Optimizer<Pose>::Iterate(PoseGraph<Pose>* graph, OptimizerResult* result) {
   factor_fits_ = false;
+  radius_ = kInfinity;
+  State best = StateOf(*graph);
+  double best_error = result->final_error;
+  result->termination = Termination::kMaxIterations;
   while (result->iterations < options_.max_iterations) {
-    const std::optional<Termination> end = TakeStep(graph, result);
-    if (end) {
+    if (const std::optional<Termination> end = TakeStep(graph, result)) {
       result->termination = *end;
-      return;
+      break;
     }
     ++result->iterations;
     Linearize(*graph);
+    Record(*graph, result);
+    if (options_.method != Method::kGaussNewton) continue;
+    if (result->final_error < best_error) {
+      best = StateOf(*graph);
+      best_error = result->final_error;
+    } else if (!std::isfinite(result->final_error)) {
+      break;
+    }
   }
-  result->termination = Termination::kMaxIterations;
+  if (options_.method == Method::kGaussNewton && !(result->final_error <= best_error)) {
+    Restore(best, graph);
+    factor_is_current_ = false;
+    result->final_error = best_error;
+    result->termination = Termination::kDiverged;
+  }
 }
 
-double Optimizer::Linearize(const PoseGraph& graph) {
+template <typename Pose>
+double Optimizer<Pose>::Linearize(const PoseGraph<Pose>& graph) {
   factor_is_current_ = false;
-  return equations_.Linearize(graph, options_.loss);
+  return equations_.Linearize(graph, objective_, &workers_);
 }
 
-bool Optimizer::Factorize(double damping) {
+template <typename Pose>
+bool Optimizer<Pose>::Factorize(double damping) {
   damping_ = damping > 0.0 ? damping * Scale() : Eigen::VectorXd();
   const bool is_definite = factor_.Factorize(equations_.hessian(), damping_);
   factor_is_current_ = is_definite && damping == 0.0;
@@ -106,24 +254,72 @@ bool Optimizer::Factorize(double damping) {
 
 // The Hessian's diagonal (Marquardt's scaling), kept off zero: no constraint may say anything about
 // a direction.
-Eigen::VectorXd Optimizer::Scale() const {
-  const SymmetricBlockMatrix<3>& H = equations_.hessian();
-  Eigen::VectorXd scale(3 * H.cols());
-  for (int i = 0; i < H.cols(); ++i) scale.segment<3>(3 * i) = H.diagonal(i).diagonal();
+template <typename Pose>
+Eigen::VectorXd Optimizer<Pose>::Scale() const {
+  const auto& H = equations_.hessian();
+  Eigen::VectorXd scale(kDof * H.cols());
+  for (int i = 0; i < H.cols(); ++i) {
+    scale.segment<kDof>(kDof * i) = H.diagonal(i).diagonal();
+  }
   return scale.cwiseMax(kSmallestScale * scale.maxCoeff());
 }
 
-std::optional<Marginals> Optimizer::ComputeMarginals() {
-  if (!factor_is_current_ && !Factorize(0.0)) return std::nullopt;
-  return Marginals(poses_, equations_, factor_);
+template <typename Pose>
+std::optional<Marginals<Pose>> Optimizer<Pose>::ComputeMarginals(const PoseGraph<Pose>& graph) {
+  const bool is_here = optimum_.state.poses.size() == graph.poses.size() &&
+                       optimum_.constraints == graph.constraints.size() &&
+                       optimum_.observations == graph.observations.size() &&
+                       BeginsWith(graph.poses, optimum_.state.poses) &&
+                       BeginsWith(graph.landmarks, optimum_.state.landmarks);
+  if (!is_here || !factor_is_current_ || options_.parametrization != Parametrization::kManifold) {
+    loopgrid::Validate(graph);
+    SetStructure(graph);
+    equations_.Linearize(graph, {options_.loss, Parametrization::kManifold}, &workers_);
+    if (!Factorize(0.0)) return std::nullopt;
+  }
+  return Marginals<Pose>(graph.poses, equations_, factor_);
 }
 
-std::optional<Termination> Optimizer::TakeStep(PoseGraph* graph, OptimizerResult* result) {
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+template <typename Pose>
+double Optimizer<Pose>::Negligible(const OptimizerResult& result) const {
+  return std::max(options_.absolute_decrease, options_.relative_decrease * result.final_error);
+}
+
+template <typename Pose>
+std::optional<Termination> Optimizer<Pose>::TakeStep(PoseGraph<Pose>* graph,
+                                                     OptimizerResult* result) {
+  switch (options_.method) {
+    case Method::kGaussNewton:
+      return GaussNewtonStep(graph, result);
+    case Method::kDogLeg:
+      return DogLegStep(graph, result);
+    case Method::kLevenbergMarquardt:
+      break;
+  }
+  return LevenbergMarquardtStep(graph, result);
+}
+
+template <typename Pose>
+std::optional<Termination> Optimizer<Pose>::GaussNewtonStep(PoseGraph<Pose>* graph,
+                                                            OptimizerResult* result) {
+  if (!Factorize(0.0)) return Termination::kIndefinite;
+  const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
+  if (-equations_.gradient().dot(dx) <= Negligible(*result)) return Termination::kConverged;
+  Move(graph, dx);
+  const double error = TotalError(*graph, objective_);
+  if (!(error < result->final_error)) ++result->uphill_steps;
+  result->final_error = error;
+  last_step_ = dx.norm();
+  return std::nullopt;
+}
+
+template <typename Pose>
+std::optional<Termination> Optimizer<Pose>::LevenbergMarquardtStep(PoseGraph<Pose>* graph,
+                                                                   OptimizerResult* result) {
   if (factor_fits_) {
-    const Step step = TryStep(graph, kSlow * last_promised_, result);
-    if (step == Step::kTaken) return std::nullopt;
-    if (step == Step::kNegligible) return Termination::kConverged;
+    const Trial trial = TryFactor(graph, kSlow * last_promised_, result);
+    if (trial == Trial::kTaken) return std::nullopt;
+    if (trial == Trial::kNegligible) return Termination::kConverged;
   }
   double& damping = result->damping;
   bool was_definite = false;
@@ -136,16 +332,16 @@ std::optional<Termination> Optimizer::TakeStep(PoseGraph* graph, OptimizerResult
       continue;
     }
     was_definite = true;
-    switch (TryStep(graph, kNoLimit, result)) {
-      case Step::kTaken:
+    switch (TryFactor(graph, kInfinity, result)) {
+      case Trial::kTaken:
         damping = Weaker(damping);
         return std::nullopt;
-      case Step::kNegligible:
+      case Trial::kNegligible:
         if (was_rejected) return Termination::kStalled;
         if (was_raised || damping == 0.0) return Termination::kConverged;
         damping = Weaker(damping);  // strong damping makes small steps: no sign of a minimum
         break;
-      case Step::kRejected:
+      case Trial::kRejected:
         damping = Stronger(damping);
         was_rejected = was_raised = true;
     }
@@ -153,33 +349,130 @@ std::optional<Termination> Optimizer::TakeStep(PoseGraph* graph, OptimizerResult
   return was_definite ? Termination::kStalled : Termination::kIndefinite;
 }
 
-Optimizer::Step Optimizer::TryStep(PoseGraph* graph, double most_promised,
-                                   OptimizerResult* result) {
+template <typename Pose>
+typename Optimizer<Pose>::Trial Optimizer<Pose>::TryFactor(PoseGraph<Pose>* graph,
+                                                           double most_promised,
+                                                           OptimizerResult* result) {
   factor_fits_ = false;
   const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
   // The quadratic model falls by -(2 b^T dx + dx^T H dx), where (H + lambda D) dx = -b.
   double promised = -equations_.gradient().dot(dx);
   if (damping_.size() > 0) promised += dx.dot(damping_.cwiseProduct(dx));
-  const double negligible =
-      std::max(options_.absolute_decrease, options_.relative_decrease * result->final_error);
-  if (promised <= negligible) return Step::kNegligible;
-  if (promised > most_promised) return Step::kRejected;
-
-  poses_ = graph->poses;
-  for (std::size_t node = 0; node < graph->poses.size(); ++node) {
-    const int variable = equations_.variable(static_cast<int>(node));
-    if (variable >= 0) graph->poses[node] = poses_[node].Boxplus(dx.segment<3>(3 * variable));
+  if (promised > most_promised) return Trial::kRejected;
+  const double before = result->final_error;
+  const Trial trial = TryStep(graph, dx, promised, result);
+  if (trial == Trial::kTaken && result->damping == 0.0) {
+    const double decrease = before - result->final_error;
+    factor_fits_ = std::abs(decrease - promised) < kGoodModel * promised;
   }
-  const double error = NormalEquations::Error(*graph, options_.loss);
-  const double decrease = result->final_error - error;
-  if (!(decrease > 0.0)) {
-    graph->poses.swap(poses_);
-    return Step::kRejected;
+  return trial;
+}
+
+// Powell 1970, in the coordinates in which the Hessian's diagonal is 1: from the Cauchy point, the
+// minimum along the steepest descent, towards the Gauss-Newton step.
+template <typename Pose>
+std::optional<Termination> Optimizer<Pose>::DogLegStep(PoseGraph<Pose>* graph,
+                                                       OptimizerResult* result) {
+  double& damping = result->damping;  // only as much as makes the Hessian definite
+  while (!Factorize(damping)) {
+    damping = Stronger(damping);
+    if (damping > kLargestDamping) return Termination::kIndefinite;
+  }
+  const auto& H = equations_.hessian();
+  const Eigen::VectorXd& b = equations_.gradient();
+  const Eigen::VectorXd scale = Scale();
+  const auto norm = [&scale](const Eigen::VectorXd& v) {
+    return std::sqrt(v.dot(scale.cwiseProduct(v)));
+  };
+  const Eigen::VectorXd newton = factor_.Solve(-b);
+  if (-b.dot(newton) <= Negligible(*result)) return Termination::kConverged;
+  Eigen::VectorXd cauchy = -b.cwiseQuotient(scale);
+  cauchy *= -b.dot(cauchy) / cauchy.dot(H * cauchy);
+
+  while (radius_ > kSmallestRadius) {
+    Eigen::VectorXd dx = newton;
+    if (norm(newton) > radius_) {
+      if (norm(cauchy) >= radius_) {
+        dx = radius_ / norm(cauchy) * cauchy;
+      } else {
+        const Eigen::VectorXd leg = newton - cauchy;
+        // The root of |cauchy + t leg| = radius in (0, 1].
+        const double a = leg.dot(scale.cwiseProduct(leg));
+        const double half_b = cauchy.dot(scale.cwiseProduct(leg));
+        const double c = radius_ * radius_ - norm(cauchy) * norm(cauchy);
+        const double root = std::sqrt(half_b * half_b + a * c);
+        const double t = half_b > 0.0 ? c / (half_b + root) : (root - half_b) / a;
+        dx = cauchy + t * leg;
+      }
+    }
+    const double promised = -2.0 * b.dot(dx) - dx.dot(H * dx);
+    const double before = result->final_error;
+    const Trial trial = TryStep(graph, dx, promised, result);
+    if (trial == Trial::kNegligible) return Termination::kStalled;
+    const double length = norm(dx);
+    if (trial == Trial::kRejected) {
+      radius_ = kDistrusted * length;
+      continue;
+    }
+    const double share = (before - result->final_error) / promised;
+    if (share > kTrusted) radius_ = std::max(radius_, 3.0 * length);
+    if (share < kDistrusted) radius_ = 0.5 * length;
+    damping = Weaker(damping);
+    return std::nullopt;
+  }
+  return Termination::kStalled;
+}
+
+template <typename Pose>
+typename Optimizer<Pose>::Trial Optimizer<Pose>::TryStep(PoseGraph<Pose>* graph,
+                                                         const Eigen::VectorXd& dx, double promised,
+                                                         OptimizerResult* result) {
+  if (promised <= Negligible(*result)) return Trial::kNegligible;
+  before_.poses = graph->poses;
+  before_.landmarks = graph->landmarks;
+  Move(graph, dx);
+  const double error = TotalError(*graph, objective_);
+  if (!(error < result->final_error)) {
+    Restore(before_, graph);
+    return Trial::kRejected;
   }
   result->final_error = error;
   last_promised_ = promised;
-  factor_fits_ = result->damping == 0.0 && std::abs(decrease - promised) < kGoodModel * promised;
-  return Step::kTaken;
+  last_step_ = dx.norm();
+  return Trial::kTaken;
 }
+
+template <typename Pose>
+void Optimizer<Pose>::Move(PoseGraph<Pose>* graph, const Eigen::VectorXd& dx) const {
+  for (int node = 0; node < static_cast<int>(graph->poses.size()); ++node) {
+    const int variable = equations_.variable(node);
+    if (variable < 0) continue;
+    Pose& pose = graph->poses[Index(node)];
+    pose = Increment<Pose>(pose, dx.segment<kDof>(kDof * variable), objective_.parametrization);
+  }
+  for (int landmark = 0; landmark < static_cast<int>(graph->landmarks.size()); ++landmark) {
+    const int variable = equations_.landmark_variable(landmark);
+    if (variable < 0) continue;
+    constexpr int kPoint = Pose::Point::RowsAtCompileTime;
+    graph->landmarks[Index(landmark)] += dx.segment<kPoint>(kDof * variable);
+  }
+}
+
+template <typename Pose>
+void Optimizer<Pose>::Restore(const State& state, PoseGraph<Pose>* graph) {
+  graph->poses = state.poses;
+  graph->landmarks = state.landmarks;
+}
+
+template <typename Pose>
+void Optimizer<Pose>::Record(const PoseGraph<Pose>& graph, OptimizerResult* result) {
+  if (!options_.trace) return;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  result->trace.push_back({result->final_error, TotalChi2(graph), result->damping,
+                           result->trace.empty() ? 0.0 : last_step_, elapsed.count()});
+}
+
+template class Optimizer<SE2>;
+template class Optimizer<SE3>;
 
 }  // namespace loopgrid

@@ -1,25 +1,47 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "backend/base/worker_pool.h"
 #include "backend/marginals.h"
 #include "backend/normal_equations.h"
+#include "backend/parametrization.h"
 #include "backend/pose_graph.h"
 #include "backend/robust_loss.h"
 #include "backend/sparse_cholesky.h"
 
 namespace loopgrid {
 
+/// How a step is made of the linearised problem H dx = -b.
+enum class Method {
+  /// Gauss-Newton steps as long as they lower F, damped ones (Marquardt 1963) where they do not.
+  kLevenbergMarquardt,
+  /// Full steps, whether they lower F or not: Algorithms 1 and 2 of the tutorial to the letter.
+  kGaussNewton,
+  /// Powell's dog leg: the Gauss-Newton step, or on the way to it from that of steepest descent as
+  /// far as the model has proved right. One factorisation a step.
+  kDogLeg,
+};
+
 struct OptimizerOptions {
+  Method method = Method::kLevenbergMarquardt;
+  Parametrization parametrization = Parametrization::kManifold;
   int max_iterations = 100;  ///< steps
   /// Stop when the next step promises to lower F by less than this share of F ...
   double relative_decrease = 1e-8;
   /// ... or by less than this (F counts squared standard deviations).
   double absolute_decrease = 1e-9;
-  /// Of the constraints marked robust.
+  /// Of the constraints and observations marked robust.
   RobustLoss loss;
+  /// Graduated non-convexity (Yang et al. 2020), for Geman-McClure losses: begins with a width at
+  /// which nothing is an outlier and narrows it, so that the start matters less.
+  bool graduated = false;
+  int threads = 1;     ///< to linearise large graphs; the result does not depend on it
+  bool trace = false;  ///< fill in OptimizerResult::trace
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;
@@ -28,62 +50,112 @@ struct OptimizerOptions {
 enum class Termination {
   kConverged,      ///< the next step would lower F by a negligible amount
   kMaxIterations,  ///< still improving when the iterations were used up
-  kStalled,        ///< no damping, however strong, found a lower F: at a numerical floor
-  kIndefinite,     ///< the Hessian stays not positive definite, however strongly damped
+  kStalled,        ///< no step, however short, found a lower F: at a numerical floor
+  kDiverged,       ///< Gauss-Newton ended higher than where it had been
+  kIndefinite,     ///< the Hessian is not positive definite, or stays so however strongly damped
   kNothingToMove,  ///< no node, or all of them held
 };
 
 /// One English phrase: "converged", ...
 const char* ToString(Termination termination);
 
+/// The state after a step.
+struct IterationRecord {
+  double error = 0.0;    ///< F
+  double chi2 = 0.0;     ///< TotalChi2, which is F but for robust losses and Euler angles
+  double damping = 0.0;  ///< Levenberg-Marquardt's lambda
+  double step = 0.0;     ///< length of the increment, all variables together
+  double seconds = 0.0;  ///< since the call
+};
+
 struct OptimizerResult {
   double initial_error = 0.0;  ///< F at the start (with the robust loss)
   double final_error = 0.0;    ///< F at the end; never more than at the start
   int iterations = 0;          ///< steps taken
+  int uphill_steps = 0;        ///< of these, by Gauss-Newton, that made F worse
   double damping = 0.0;        ///< Levenberg-Marquardt's lambda at the end; 0: Gauss-Newton
   Termination termination = Termination::kNothingToMove;
+  std::vector<IterationRecord> trace;  ///< the start and every step
 };
 
-/// Least-squares optimisation of a pose graph on the manifold: Gauss-Newton (the tutorial's
-/// Algorithm 2), and Levenberg-Marquardt whenever a Gauss-Newton step would make F worse. Keep the
-/// object while a graph grows: what was allocated and analysed is used again, and a call costs one
-/// linearisation and one solve when little changed. HeldNodes() do not move.
+/// Least-squares optimisation of a pose graph. Keep the object while a graph grows: what was
+/// allocated and analysed is used again, and what is new costs nothing beyond a look at F as long
+/// as it agrees with the rest. HeldNodes() do not move.
+template <typename Pose>
 class Optimizer {
  public:
   /// Throws Error (kUsage) if the options are not valid.
   explicit Optimizer(const OptimizerOptions& options = {});
 
-  /// Moves the graph's poses, from where they are, to a minimum of F. Throws Error (kInput) if the
-  /// graph is not valid (see Validate); a graph with several components is optimised as such.
-  OptimizerResult Optimize(PoseGraph* graph);
+  /// Moves the graph's poses and landmarks, from where they are, to a minimum of F, or to the best
+  /// point on the way. Throws Error (kInput) if the graph is not valid (see Validate); a graph with
+  /// several components is optimised as such.
+  OptimizerResult Optimize(PoseGraph<Pose>* graph);
 
-  /// Covariances of the nodes at the poses where the last call ended; nothing if the Hessian there
-  /// is not positive definite. Valid until the optimiser is used again or moved.
-  std::optional<Marginals> ComputeMarginals();
-
-  /// Hessian and gradient at the poses where the last call ended.
-  const NormalEquations& equations() const { return equations_; }
+  /// Covariances at the graph's poses and landmarks, for local motions (Pose::Boxplus); nothing if
+  /// the Hessian there is not positive definite. Right after Optimize of the same graph its
+  /// factorisation is used. Valid until the optimiser is used again or moved.
+  std::optional<Marginals<Pose>> ComputeMarginals(const PoseGraph<Pose>& graph);
 
  private:
-  enum class Step { kTaken, kNegligible, kRejected };
+  static constexpr int kDof = Pose::kDof;
+  enum class Trial { kTaken, kNegligible, kRejected };
+  struct State {
+    std::vector<Pose> poses;
+    std::vector<typename Pose::Point> landmarks;
+  };
+  /// The end of a call: what has to be the same for it to be a minimum still.
+  struct Optimum {
+    bool is_minimum = false;
+    double error = 0.0;
+    State state;
+    std::vector<int> fixed;
+    std::size_t constraints = 0;
+    std::size_t observations = 0;
+  };
 
-  void Iterate(PoseGraph* graph, OptimizerResult* result);
-  /// Lowers F by one step, or says why there is none.
-  std::optional<Termination> TakeStep(PoseGraph* graph, OptimizerResult* result);
+  OptimizerResult Minimize(PoseGraph<Pose>* graph);
+  OptimizerResult MinimizeGraduated(PoseGraph<Pose>* graph);
+  bool IsAtOptimum(const PoseGraph<Pose>& graph, double* error) const;
+  void SetStructure(const PoseGraph<Pose>& graph);
+  void Iterate(PoseGraph<Pose>* graph, OptimizerResult* result);
+  /// Make one step, or say why there is none.
+  std::optional<Termination> TakeStep(PoseGraph<Pose>* graph, OptimizerResult* result);
+  std::optional<Termination> GaussNewtonStep(PoseGraph<Pose>* graph, OptimizerResult* result);
+  std::optional<Termination> LevenbergMarquardtStep(PoseGraph<Pose>* graph,
+                                                    OptimizerResult* result);
+  std::optional<Termination> DogLegStep(PoseGraph<Pose>* graph, OptimizerResult* result);
   /// A step by the present factor, unless it promises more than a limit.
-  Step TryStep(PoseGraph* graph, double most_promised, OptimizerResult* result);
-  double Linearize(const PoseGraph& graph);
+  Trial TryFactor(PoseGraph<Pose>* graph, double most_promised, OptimizerResult* result);
+  /// Moves the graph by `dx` if that lowers F; `promised` is what the quadratic model says it does.
+  Trial TryStep(PoseGraph<Pose>* graph, const Eigen::VectorXd& dx, double promised,
+                OptimizerResult* result);
+  void Move(PoseGraph<Pose>* graph, const Eigen::VectorXd& dx) const;
+  static State StateOf(const PoseGraph<Pose>& graph) { return {graph.poses, graph.landmarks}; }
+  static void Restore(const State& state, PoseGraph<Pose>* graph);
+  double Linearize(const PoseGraph<Pose>& graph);
   bool Factorize(double damping);
   Eigen::VectorXd Scale() const;
+  double Negligible(const OptimizerResult& result) const;
+  void Record(const PoseGraph<Pose>& graph, OptimizerResult* result);
 
   OptimizerOptions options_;
-  NormalEquations equations_;
-  SparseCholesky<3> factor_;
+  Objective objective_;
+  WorkerPool workers_;
+  NormalEquations<Pose> equations_;
+  SparseCholesky<kDof> factor_;
   Eigen::VectorXd damping_;         // added to the Hessian's diagonal; empty: nothing
   bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
-  bool factor_fits_ = false;        // factor_ is of the last poses, and good enough for these
+  bool factor_fits_ = false;        // factor_ is of the last point, and good enough for this one
   double last_promised_ = 0.0;      // decrease of F, by the last step
-  std::vector<SE2> poses_;          // before the step being tried; at the end, the result
+  double last_step_ = 0.0;          // its length
+  double radius_ = 0.0;             // of the dog leg's trust region
+  State before_;                    // the step being tried
+  std::chrono::steady_clock::time_point start_;  // of the call
+  Optimum optimum_;                              // where the last call ended
 };
+
+extern template class Optimizer<SE2>;
+extern template class Optimizer<SE3>;
 
 }  // namespace loopgrid

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <string>
@@ -25,68 +24,104 @@ int FindRoot(std::vector<int>* parent, int node) {
   return node;
 }
 
-bool IsNode(const PoseGraph& graph, int node) {
-  return node >= 0 && Index(node) < graph.poses.size();
+void Join(std::vector<int>* parent, int a, int b) {
+  a = FindRoot(parent, a);
+  b = FindRoot(parent, b);
+  // The lower index becomes the root, so that the root is the component's first node.
+  if (a != b) (*parent)[Index(std::max(a, b))] = std::min(a, b);
 }
 
-Error NoSuchNode(const PoseGraph& graph, const std::string& where, int node) {
-  return Error(ErrorCode::kInput, fmt::format("{} refers to node {}, but the graph has {} nodes",
-                                              where, node, graph.poses.size()));
+template <typename Items>
+void RequireIndex(const Items& items, int index, const char* where, std::size_t k,
+                  const char* what) {
+  if (index >= 0 && Index(index) < items.size()) return;
+  throw Error(ErrorCode::kInput, fmt::format("{} {} refers to {} {}, but the graph has {}", where,
+                                             k, what, index, items.size()));
+}
+
+Error NotFinite(const char* what, std::size_t k) {
+  return Error(ErrorCode::kInput, fmt::format("{} {} is not finite", what, k));
 }
 
 }  // namespace
 
-void Validate(const PoseGraph& graph) {
+template <typename Pose>
+void Validate(const PoseGraph<Pose>& graph) {
   for (std::size_t i = 0; i < graph.poses.size(); ++i) {
-    if (graph.poses[i].coordinates().allFinite()) continue;
-    throw Error(ErrorCode::kInput, fmt::format("the pose of node {} is not finite", i));
+    if (!graph.poses[i].IsFinite()) throw NotFinite("the pose of node", i);
+  }
+  for (std::size_t i = 0; i < graph.landmarks.size(); ++i) {
+    if (!graph.landmarks[i].allFinite()) throw NotFinite("landmark", i);
   }
   for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
-    const Constraint& constraint = graph.constraints[k];
-    for (int node : {constraint.from, constraint.to}) {
-      if (!IsNode(graph, node)) throw NoSuchNode(graph, fmt::format("constraint {}", k), node);
-    }
+    const Constraint<Pose>& constraint = graph.constraints[k];
+    RequireIndex(graph.poses, constraint.from, "constraint", k, "node");
+    RequireIndex(graph.poses, constraint.to, "constraint", k, "node");
     if (constraint.from == constraint.to) {
       throw Error(ErrorCode::kInput,
                   fmt::format("constraint {} joins node {} to itself", k, constraint.from));
     }
-    if (!constraint.T_from_to.coordinates().allFinite() || !constraint.information.allFinite()) {
-      throw Error(ErrorCode::kInput, fmt::format("constraint {} is not finite", k));
+    if (!constraint.T_from_to.IsFinite() || !constraint.information.allFinite()) {
+      throw NotFinite("constraint", k);
     }
   }
-  for (int node : graph.fixed) {
-    if (!IsNode(graph, node)) throw NoSuchNode(graph, "the list of fixed nodes", node);
+  for (std::size_t k = 0; k < graph.observations.size(); ++k) {
+    const LandmarkObservation<Pose>& observation = graph.observations[k];
+    RequireIndex(graph.poses, observation.node, "observation", k, "node");
+    RequireIndex(graph.landmarks, observation.landmark, "observation", k, "landmark");
+    if (!observation.p_node.allFinite() || !observation.information.allFinite()) {
+      throw NotFinite("observation", k);
+    }
+  }
+  for (std::size_t k = 0; k < graph.fixed.size(); ++k) {
+    RequireIndex(graph.poses, graph.fixed[k], "fixed node", k, "node");
   }
 }
 
-std::vector<int> ConnectedComponents(const PoseGraph& graph) {
-  std::vector<int> parent(graph.poses.size());
+template <typename Pose>
+Components ConnectedComponents(const PoseGraph<Pose>& graph) {
+  const int nodes = static_cast<int>(graph.poses.size());
+  std::vector<int> parent(graph.poses.size() + graph.landmarks.size());
   std::iota(parent.begin(), parent.end(), 0);
-  for (const Constraint& constraint : graph.constraints) {
-    const int a = FindRoot(&parent, constraint.from);
-    const int b = FindRoot(&parent, constraint.to);
-    // The lower index becomes the root, so that the root is the component's first node.
-    if (a != b) parent[Index(std::max(a, b))] = std::min(a, b);
+  for (const auto& constraint : graph.constraints) Join(&parent, constraint.from, constraint.to);
+  for (const auto& observation : graph.observations) {
+    Join(&parent, observation.node, nodes + observation.landmark);
   }
+  Components components;
   for (int i = 0; i < static_cast<int>(parent.size()); ++i) {
-    parent[Index(i)] = FindRoot(&parent, i);
+    const int root = FindRoot(&parent, i);
+    if (i < nodes) {
+      components.of_node.push_back(root);
+    } else {
+      components.of_landmark.push_back(root < nodes ? root : -1);
+    }
   }
-  return parent;
+  return components;
 }
 
-std::vector<int> HeldNodes(const PoseGraph& graph, const std::vector<int>& components) {
-  std::vector<bool> held(components.size(), false);
-  std::vector<bool> has_fixed(components.size(), false);
+template <typename Pose>
+std::vector<int> HeldNodes(const PoseGraph<Pose>& graph, const Components& components) {
+  const std::vector<int>& of_node = components.of_node;
+  std::vector<bool> held(of_node.size(), false);
+  std::vector<bool> has_fixed(of_node.size(), false);
   for (int node : graph.fixed) {
     held[Index(node)] = true;
-    has_fixed[Index(components[Index(node)])] = true;
+    has_fixed[Index(of_node[Index(node)])] = true;
   }
   std::vector<int> nodes;
-  for (int node = 0; node < static_cast<int>(components.size()); ++node) {
-    const bool is_first = components[Index(node)] == node;
+  for (int node = 0; node < static_cast<int>(of_node.size()); ++node) {
+    const bool is_first = of_node[Index(node)] == node;
     if (held[Index(node)] || (is_first && !has_fixed[Index(node)])) nodes.push_back(node);
   }
   return nodes;
 }
+
+#define LOOPGRID_INSTANTIATE(Pose)                                 \
+  template void Validate(const PoseGraph<Pose>&);                  \
+  template Components ConnectedComponents(const PoseGraph<Pose>&); \
+  template std::vector<int> HeldNodes(const PoseGraph<Pose>&, const Components&);
+LOOPGRID_INSTANTIATE(SE2)
+LOOPGRID_INSTANTIATE(SE3)
+#undef LOOPGRID_INSTANTIATE
 
 }  // namespace loopgrid

@@ -194,5 +194,6 @@ std::vector<Eigen::Matrix<double, kDim, kDim>> InverseDiagonal(const SparseChole
 }
 
 template std::vector<Eigen::Matrix3d> InverseDiagonal(const SparseCholesky<3>& factor);
+template std::vector<Eigen::Matrix<double, 6, 6>> InverseDiagonal(const SparseCholesky<6>& factor);
 
 }  // namespace loopgrid

@@ -12,5 +12,7 @@ template <int kDim>
 std::vector<Eigen::Matrix<double, kDim, kDim>> InverseDiagonal(const SparseCholesky<kDim>& factor);
 
 extern template std::vector<Eigen::Matrix3d> InverseDiagonal(const SparseCholesky<3>& factor);
+extern template std::vector<Eigen::Matrix<double, 6, 6>> InverseDiagonal(
+    const SparseCholesky<6>& factor);
 
 }  // namespace loopgrid

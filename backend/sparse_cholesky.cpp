@@ -243,6 +243,8 @@ Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::Matrix
   return result;
 }
 
+template class SparseCholesky<2>;
 template class SparseCholesky<3>;
+template class SparseCholesky<6>;
 
 }  // namespace loopgrid

@@ -70,6 +70,8 @@ class SparseCholesky {
   mutable std::vector<double> solve_work_;  // the right-hand sides of one front
 };
 
+extern template class SparseCholesky<2>;
 extern template class SparseCholesky<3>;
+extern template class SparseCholesky<6>;
 
 }  // namespace loopgrid

@@ -56,6 +56,20 @@ class SymmetricBlockMatrix {
   /// row < col for each
   std::span<const BlockPlace> places() const { return places_; }
 
+  /// The product with a vector.
+  Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd y(x.size());
+    for (int k = 0; k < cols(); ++k) {
+      y.segment<kDim>(kDim * k) = diagonal(k) * x.segment<kDim>(kDim * k);
+    }
+    for (int block = 0; block < block_count(); ++block) {
+      const auto [row, col] = places_[static_cast<std::size_t>(block)];
+      y.segment<kDim>(kDim * row) += off_diagonal(block) * x.segment<kDim>(kDim * col);
+      y.segment<kDim>(kDim * col) += off_diagonal(block).transpose() * x.segment<kDim>(kDim * row);
+    }
+    return y;
+  }
+
   Block& diagonal(int col) { return diagonal_[static_cast<std::size_t>(col)]; }
   const Block& diagonal(int col) const { return diagonal_[static_cast<std::size_t>(col)]; }
   Block& off_diagonal(int block) { return values_[static_cast<std::size_t>(block)]; }

@@ -14,6 +14,7 @@ class SE2 {
  public:
   static constexpr int kDof = 3;
   using Tangent = Eigen::Vector3d;  ///< (x, y, theta)
+  using Point = Eigen::Vector2d;
 
   SE2() = default;
   SE2(double x, double y, double theta)
@@ -31,6 +32,7 @@ class SE2 {
   Eigen::Matrix2d rotation() const { return (Eigen::Matrix2d() << c_, -s_, s_, c_).finished(); }
   /// (x, y, theta): the coordinates, not the logarithm.
   Eigen::Vector3d coordinates() const { return {x_, y_, theta_}; }
+  bool IsFinite() const { return coordinates().allFinite(); }
 
   SE2 Inverse() const { return SE2(-c_ * x_ - s_ * y_, s_ * x_ - c_ * y_, -theta_); }
 

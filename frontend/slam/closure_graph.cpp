@@ -41,7 +41,7 @@ void ClosureGraph::AddNode(const SE2& T_map_node, const SE2& T_last_node,
   ExtendRelativeCovariances(graph_, graph_.constraints.back(), &covariances_);
 }
 
-double ClosureGraph::Chi2(const Constraint& constraint) const {
+double ClosureGraph::Chi2(const Constraint<SE2>& constraint) const {
   const SE2& from = graph_.poses[static_cast<std::size_t>(constraint.from)];
   const SE2& to = graph_.poses[static_cast<std::size_t>(constraint.to)];
   const Eigen::Vector3d e = (from.Inverse() * to).Boxminus(constraint.T_from_to);
@@ -52,7 +52,7 @@ int ClosureGraph::WorstClosure() const {
   int worst = -1;
   double worst_chi2 = kMaxChi2;
   for (std::size_t k = 0; k < graph_.constraints.size(); ++k) {
-    const Constraint& c = graph_.constraints[k];
+    const Constraint<SE2>& c = graph_.constraints[k];
     if (!c.robust) continue;
     const double chi2 = Chi2(c);
     if (chi2 <= worst_chi2) continue;
@@ -62,12 +62,12 @@ int ClosureGraph::WorstClosure() const {
   return worst;
 }
 
-bool ClosureGraph::TryClosures(std::span<const Constraint> closures,
-                               std::vector<Constraint>* removed) {
-  const PoseGraph before = graph_;
+bool ClosureGraph::TryClosures(std::span<const Constraint<SE2>> closures,
+                               std::vector<Constraint<SE2>>* removed) {
+  const PoseGraph<SE2> before = graph_;
   int old_ones = static_cast<int>(graph_.constraints.size());
   int new_ones = static_cast<int>(closures.size());
-  std::vector<Constraint> contradicted;
+  std::vector<Constraint<SE2>> contradicted;
   graph_.constraints.insert(graph_.constraints.end(), closures.begin(), closures.end());
   optimizer_.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
@@ -87,25 +87,25 @@ bool ClosureGraph::TryClosures(std::span<const Constraint> closures,
   return true;
 }
 
-void ClosureGraph::UpdateCovariances(Optimizer* optimizer) {
-  if (const std::optional<Marginals> marginals = optimizer->ComputeMarginals()) {
+void ClosureGraph::UpdateCovariances(Optimizer<SE2>* optimizer) {
+  if (const std::optional<Marginals<SE2>> marginals = optimizer->ComputeMarginals(graph_)) {
     covariances_ = marginals->RelativeTo(size() - 1);
   }
 }
 
-std::vector<Constraint> ClosureGraph::Settle(std::span<const Constraint> links) {
-  std::vector<Constraint> removed;
+std::vector<Constraint<SE2>> ClosureGraph::Settle(std::span<const Constraint<SE2>> links) {
+  std::vector<Constraint<SE2>> removed;
   if (size() == 0) return removed;
   graph_.constraints.insert(graph_.constraints.end(), links.begin(), links.end());
-  Optimizer optimizer(AtTheEnd());
+  Optimizer<SE2> optimizer(AtTheEnd());
   optimizer.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
     // Wrong ones pull their neighbours off: take out those near the worst, then look again.
     const double limit =
         std::max(kMaxChi2, 0.5 * Chi2(graph_.constraints[static_cast<std::size_t>(worst)]));
-    const auto kept =
-        std::stable_partition(graph_.constraints.begin(), graph_.constraints.end(),
-                              [&](const Constraint& c) { return !c.robust || Chi2(c) <= limit; });
+    const auto kept = std::stable_partition(
+        graph_.constraints.begin(), graph_.constraints.end(),
+        [&](const Constraint<SE2>& c) { return !c.robust || Chi2(c) <= limit; });
     removed.insert(removed.end(), kept, graph_.constraints.end());
     graph_.constraints.erase(kept, graph_.constraints.end());
     optimizer.Optimize(&graph_);

@@ -15,7 +15,7 @@ class ClosureGraph {
  public:
   ClosureGraph();
 
-  const PoseGraph& graph() const { return graph_; }
+  const PoseGraph<SE2>& graph() const { return graph_; }
   int size() const { return static_cast<int>(graph_.poses.size()); }
 
   /// Adds a node at `T_map_node`, joined to the last one by what `T_last_node` (with `covariance`,
@@ -26,28 +26,28 @@ class ClosureGraph {
   /// kMaxChi2, the worst goes out again; old ones only while fewer than the new ones that stay. If
   /// none of the new ones would stay, the graph is left as it was: false. What went out is put into
   /// `removed`.
-  bool TryClosures(std::span<const Constraint> closures,
-                   std::vector<Constraint>* removed = nullptr);
+  bool TryClosures(std::span<const Constraint<SE2>> closures,
+                   std::vector<Constraint<SE2>>* removed = nullptr);
 
   /// Ends the run: adds `links`, optimises to convergence, and takes out closures and links that
   /// are off by more than kMaxChi2, the worst first. Returns those.
-  std::vector<Constraint> Settle(std::span<const Constraint> links);
+  std::vector<Constraint<SE2>> Settle(std::span<const Constraint<SE2>> links);
 
   /// Covariance of every node relative to the last one, each in its own frame.
   const std::vector<Eigen::Matrix3d>& relative_covariances() const { return covariances_; }
 
   /// chi-square e^T Omega e of a constraint at the present poses.
-  double Chi2(const Constraint& constraint) const;
+  double Chi2(const Constraint<SE2>& constraint) const;
 
   static constexpr double kMaxChi2 = 25.0;  ///< five sigmas
 
  private:
   // Index of the constraint of the closure that is off the most, -1 if none is off too much.
   int WorstClosure() const;
-  void UpdateCovariances(Optimizer* optimizer);
+  void UpdateCovariances(Optimizer<SE2>* optimizer);
 
-  PoseGraph graph_;
-  Optimizer optimizer_;
+  PoseGraph<SE2> graph_;
+  Optimizer<SE2> optimizer_;
   std::vector<Eigen::Matrix3d> covariances_;
 };
 

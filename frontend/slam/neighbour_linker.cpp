@@ -12,7 +12,7 @@ namespace {
 // The other ends of each node's closures.
 std::vector<std::vector<int>> ClosuresOf(const Nodes& nodes) {
   std::vector<std::vector<int>> others(static_cast<std::size_t>(nodes.size()));
-  for (const Constraint& c : nodes.graph->constraints) {
+  for (const Constraint<SE2>& c : nodes.graph->constraints) {
     if (!c.robust) continue;
     others[static_cast<std::size_t>(c.from)].push_back(c.to);
     others[static_cast<std::size_t>(c.to)].push_back(c.from);
@@ -52,7 +52,8 @@ bool IsBelievable(const ClosureMatch& match, const SE2& predicted,
 
 }  // namespace
 
-std::vector<Constraint> LinkNeighbours(const Nodes& nodes, const NeighbourLinkerOptions& options) {
+std::vector<Constraint<SE2>> LinkNeighbours(const Nodes& nodes,
+                                            const NeighbourLinkerOptions& options) {
   // By the node whose map is matched with, so that each map is made once.
   const std::vector<std::vector<int>> closures = ClosuresOf(nodes);
   std::vector<std::vector<int>> scans_for_map(static_cast<std::size_t>(nodes.size()));
@@ -65,7 +66,7 @@ std::vector<Constraint> LinkNeighbours(const Nodes& nodes, const NeighbourLinker
       if (!spared) scans_for_map[static_cast<std::size_t>(j)].push_back(i);
     }
   }
-  std::vector<Constraint> links;
+  std::vector<Constraint<SE2>> links;
   for (int j = 0; j < nodes.size(); ++j) {
     const std::vector<int>& others = scans_for_map[static_cast<std::size_t>(j)];
     if (others.empty()) continue;

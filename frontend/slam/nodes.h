@@ -16,7 +16,7 @@ struct NodeRange {
 
 /// The nodes as the front-end sees them: a graph, and the scan that each node holds.
 struct Nodes {
-  const PoseGraph* graph = nullptr;
+  const PoseGraph<SE2>* graph = nullptr;
   std::vector<const PointScan*> scans;
 
   int size() const { return static_cast<int>(scans.size()); }

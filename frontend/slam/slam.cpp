@@ -73,8 +73,9 @@ class Slam::Impl {
   void Finish() {
     const Stopwatch stopwatch(&statistics_.times.finishing);
     closer_.Finish();
-    for (const Constraint& c : graph_.Settle(LinkNeighbours(nodes_))) closer_.Reject(c.from, c.to);
-    for (const Constraint& c : graph_.graph().constraints) {
+    for (const Constraint<SE2>& c : graph_.Settle(LinkNeighbours(nodes_)))
+      closer_.Reject(c.from, c.to);
+    for (const Constraint<SE2>& c : graph_.graph().constraints) {
       if (c.robust) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
     }
   }
@@ -95,12 +96,12 @@ class Slam::Impl {
 
   SlamStatistics Statistics() const {
     SlamStatistics statistics = statistics_;
-    PoseGraph before = graph_.graph();
-    statistics.error_after = NormalEquations::Error(before, {});
+    PoseGraph<SE2> before = graph_.graph();
+    statistics.error_after = TotalError(before, {});
     for (int k = 0; k < nodes_.size(); ++k) {
       before.poses[Index(k)] = scans_[Index(node_scans_[Index(k)])].T_odom_robot;
     }
-    statistics.error_before = NormalEquations::Error(before, {});
+    statistics.error_before = TotalError(before, {});
     return statistics;
   }
 
@@ -173,16 +174,16 @@ class Slam::Impl {
     }
     if (believed.empty()) return false;
     const Stopwatch stopwatch(&statistics_.times.optimizing);
-    std::vector<Constraint> closures;
+    std::vector<Constraint<SE2>> closures;
     for (int index : believed) {
       const ClosureRecord& r = closer_.records()[Index(index)];
       closures.push_back({r.from, r.to, r.T_from_to, r.covariance.inverse(), true});
     }
-    std::vector<Constraint> removed;
+    std::vector<Constraint<SE2>> removed;
     const bool kept = graph_.TryClosures(closures, &removed);
-    for (const Constraint& c : closures) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
+    for (const Constraint<SE2>& c : closures) closer_.SetChi2(c.from, c.to, graph_.Chi2(c));
     closer_.Decide(believed, kept);
-    for (const Constraint& c : removed) closer_.Reject(c.from, c.to);
+    for (const Constraint<SE2>& c : removed) closer_.Reject(c.from, c.to);
     return kept;
   }
 
@@ -206,7 +207,7 @@ Slam& Slam::operator=(Slam&&) noexcept = default;
 
 TrackedScan Slam::AddScan(const Observation& observation) { return impl_->AddScan(observation); }
 void Slam::Finish() { impl_->Finish(); }
-const PoseGraph& Slam::graph() const { return impl_->graph().graph(); }
+const PoseGraph<SE2>& Slam::graph() const { return impl_->graph().graph(); }
 const std::vector<int>& Slam::node_scans() const { return impl_->node_scans(); }
 int Slam::scan_count() const { return static_cast<int>(impl_->scans().size()); }
 

@@ -59,7 +59,7 @@ class Slam {
   void Finish();
 
   /// Nodes and constraints. Poses are T_map_robot.
-  const PoseGraph& graph() const;
+  const PoseGraph<SE2>& graph() const;
 
   /// Index of the scan that each node holds.
   const std::vector<int>& node_scans() const;

@@ -46,7 +46,7 @@ TEST(Linearize, AgreesWithNumericDerivatives) {
     const SE2 from = RandomPose(&random);
     const SE2 to = RandomPose(&random);
     const SE2 measured = RandomPose(&random);
-    const LinearizedConstraint linear = Linearize(from, to, measured);
+    const LinearizedConstraint<SE2> linear = Linearize(from, to, measured);
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(k);
       Eigen::Vector3d by_from = ConstraintError(from.Boxplus(d), to, measured) -
@@ -69,7 +69,7 @@ TEST(Linearize, ErrorsDoNotChangeWhenBothNodesMoveTogether) {
   for (int i = 0; i < 50; ++i) {
     const SE2 from = RandomPose(&random);
     const SE2 to = RandomPose(&random);
-    const LinearizedConstraint linear = Linearize(from, to, RandomPose(&random));
+    const LinearizedConstraint<SE2> linear = Linearize(from, to, RandomPose(&random));
     const Eigen::Matrix3d change =
         linear.J_from * from.Inverse().Adjoint() + linear.J_to * to.Inverse().Adjoint();
     EXPECT_TRUE(change.isZero(1e-12)) << "seed 13, case " << i;
@@ -77,10 +77,10 @@ TEST(Linearize, ErrorsDoNotChangeWhenBothNodesMoveTogether) {
 }
 
 TEST(TotalChi2, SumsTheSquaredErrorsInStandardDeviations) {
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   graph.poses = {SE2(), SE2(1.0, 0.0, 0.0), SE2(1.0, 3.0, 0.0)};
-  Constraint along{0, 1, SE2(0.5, 0.0, 0.0), Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal()};
-  Constraint across{1, 2, SE2(0.0, 2.0, 0.0), Eigen::Vector3d(1.0, 9.0, 1.0).asDiagonal()};
+  Constraint<SE2> along{0, 1, SE2(0.5, 0.0, 0.0), Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal()};
+  Constraint<SE2> across{1, 2, SE2(0.0, 2.0, 0.0), Eigen::Vector3d(1.0, 9.0, 1.0).asDiagonal()};
   graph.constraints = {along, across};
   EXPECT_DOUBLE_EQ(Chi2(graph, along), 1.0);
   EXPECT_DOUBLE_EQ(Chi2(graph, across), 9.0);

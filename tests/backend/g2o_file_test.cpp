@@ -38,7 +38,7 @@ TEST(G2oFile, ReadsVerticesEdgesAndFixInAnyOrder) {
   EXPECT_EQ(read.graph.poses[0].coordinates(), Eigen::Vector3d(1.5, -2.5, 0.25));
   EXPECT_EQ(read.graph.poses[2].coordinates(), Eigen::Vector3d(10.0, 0.5, NormalizeAngle(-3.5)));
   ASSERT_EQ(read.graph.constraints.size(), 1u);
-  const Constraint& constraint = read.graph.constraints[0];
+  const Constraint<SE2>& constraint = read.graph.constraints[0];
   EXPECT_EQ(constraint.from, 2);
   EXPECT_EQ(constraint.to, 1);
   EXPECT_EQ(constraint.T_from_to.coordinates(), Eigen::Vector3d(1.0, 2.0, 0.5));
@@ -65,8 +65,8 @@ TEST(G2oFile, RoundTripsLoseNothing) {
   }
   ASSERT_EQ(again.graph.constraints.size(), graph.graph.constraints.size());
   for (std::size_t k = 0; k < graph.graph.constraints.size(); ++k) {
-    const Constraint& before = graph.graph.constraints[k];
-    const Constraint& after = again.graph.constraints[k];
+    const Constraint<SE2>& before = graph.graph.constraints[k];
+    const Constraint<SE2>& after = again.graph.constraints[k];
     EXPECT_EQ(after.from, before.from);
     EXPECT_EQ(after.to, before.to);
     EXPECT_EQ(after.T_from_to.coordinates(), before.T_from_to.coordinates());
@@ -77,7 +77,7 @@ TEST(G2oFile, RoundTripsLoseNothing) {
 }
 
 TEST(G2oFile, NamesNodesByIndexWithoutIds) {
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   graph.poses = {SE2(), SE2(1.0, 0.25, -0.5)};
   graph.constraints.push_back({1, 0, SE2(0.1, 0, 0), Eigen::Matrix3d::Identity()});
   graph.fixed = {1};
@@ -147,7 +147,7 @@ TEST(G2oFile, RefusesFilesWithoutAVertex) {
 
 TEST(G2oFile, WritingWhereOneCannotIsAnOutputError) {
   try {
-    WriteG2o("/nonexistent/graph.g2o", PoseGraph());
+    WriteG2o("/nonexistent/graph.g2o", PoseGraph<SE2>());
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kOutput);

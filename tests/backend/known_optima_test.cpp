@@ -22,10 +22,10 @@ struct KnownOptimum {
 };
 
 /// F by complex arithmetic, straight from the definition.
-double StraightforwardError(const PoseGraph& graph) {
+double StraightforwardError(const PoseGraph<SE2>& graph) {
   using Complex = std::complex<double>;
   double sum = 0.0;
-  for (const Constraint& constraint : graph.constraints) {
+  for (const Constraint<SE2>& constraint : graph.constraints) {
     const SE2& from = graph.poses[static_cast<std::size_t>(constraint.from)];
     const SE2& to = graph.poses[static_cast<std::size_t>(constraint.to)];
     const SE2& T = constraint.T_from_to;
@@ -47,18 +47,18 @@ TEST_P(KnownOptimumTest, IsReachedFromTheStartInTheFile) {
   const char* folder = std::getenv("LOOPGRID_DATA");
   if (folder == nullptr) GTEST_SKIP() << "LOOPGRID_DATA is not set";
   G2oGraph read = ReadG2o(std::string(folder) + "/graphs/" + GetParam().file);
-  PoseGraph& graph = read.graph;
+  PoseGraph<SE2>& graph = read.graph;
   EXPECT_EQ(graph.poses.size(), GetParam().nodes);
   EXPECT_EQ(graph.constraints.size(), GetParam().constraints);
 
-  Optimizer optimizer;
+  Optimizer<SE2> optimizer;
   const double start = StraightforwardError(graph);
   const OptimizerResult result = optimizer.Optimize(&graph);
   EXPECT_NEAR(result.initial_error, start, 1e-9 * start);
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_LE(result.final_error, GetParam().error * (1.0 + 1e-6));
   EXPECT_NEAR(StraightforwardError(graph), result.final_error, 1e-9 * result.final_error);
-  EXPECT_TRUE(optimizer.ComputeMarginals().has_value());
+  EXPECT_TRUE(optimizer.ComputeMarginals(graph).has_value());
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, KnownOptimumTest,

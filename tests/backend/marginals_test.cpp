@@ -16,7 +16,7 @@ std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 /// Compares with the inverse of the dense Hessian without the rows and columns of one node: the
 /// definition of H_red in the tutorial.
-void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph& graph, int node,
+void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph<SE2>& graph, int node,
                                                           double tolerance = 1e-9) {
   const auto covariances = RelativeCovariances(graph, node);
   ASSERT_TRUE(covariances.has_value());
@@ -31,7 +31,7 @@ void ExpectRelativeCovariancesAreThoseOfTheReducedHessian(const PoseGraph& graph
 }
 
 TEST(RelativeCovariances, AreTheBlocksOfTheInverseOfTheReducedHessian) {
-  const PoseGraph graph = test_support::RandomGraph(60, 30, 61);
+  const PoseGraph<SE2> graph = test_support::RandomGraph(60, 30, 61);
   for (int node : {0, 1, 17, 59}) {
     ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, node);
   }
@@ -45,7 +45,7 @@ TEST(RelativeCovariances, AreRightOnChainsAndStars) {
 }
 
 TEST(RelativeCovariances, DoNotDependOnWhichSingleNodeIsFixed) {
-  PoseGraph graph = test_support::RandomGraph(30, 10, 63);
+  PoseGraph<SE2> graph = test_support::RandomGraph(30, 10, 63);
   const auto expected = RelativeCovariances(graph, 12);
   graph.fixed = {22};
   const auto covariances = RelativeCovariances(graph, 12);
@@ -57,7 +57,7 @@ TEST(RelativeCovariances, DoNotDependOnWhichSingleNodeIsFixed) {
 
 TEST(RelativeCovariances, GrowAlongAChainByTheCovarianceOfEachStep) {
   // Straight steps without rotation uncertainty to speak of: variances of steps add up.
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   Eigen::Matrix3d information = Eigen::Vector3d(4.0, 25.0, 1e12).asDiagonal();
   graph.poses.emplace_back();
   for (int i = 1; i <= 10; ++i) {
@@ -74,9 +74,9 @@ TEST(RelativeCovariances, GrowAlongAChainByTheCovarianceOfEachStep) {
 }
 
 TEST(RelativeCovariances, AreInfiniteBetweenComponents) {
-  PoseGraph graph = test_support::RandomGraph(10, 5, 64);
-  const PoseGraph other = test_support::RandomGraph(8, 4, 65);
-  for (Constraint constraint : other.constraints) {
+  PoseGraph<SE2> graph = test_support::RandomGraph(10, 5, 64);
+  const PoseGraph<SE2> other = test_support::RandomGraph(8, 4, 65);
+  for (Constraint<SE2> constraint : other.constraints) {
     constraint.from += 10;
     constraint.to += 10;
     graph.constraints.push_back(constraint);
@@ -96,21 +96,21 @@ TEST(RelativeCovariances, AreInfiniteBetweenComponents) {
 }
 
 TEST(RelativeCovariances, OfADanglingDirectionAreRefused) {
-  PoseGraph graph = test_support::RandomGraph(10, 0, 66);
+  PoseGraph<SE2> graph = test_support::RandomGraph(10, 0, 66);
   graph.constraints[4].information.setZero();
   graph.constraints[4].information(0, 0) = 1.0;  // a chain link that knows x alone
   EXPECT_FALSE(RelativeCovariances(graph, 9).has_value());
 }
 
 TEST(RelativeCovariances, AreRightWhenNearlySingular) {
-  PoseGraph graph = test_support::RandomGraph(20, 0, 67);
+  PoseGraph<SE2> graph = test_support::RandomGraph(20, 0, 67);
   graph.constraints[9].information *= 1e-7;  // two halves that hardly know each other
   // Seven of sixteen digits go to the condition of the matrix, in the reference too.
   ExpectRelativeCovariancesAreThoseOfTheReducedHessian(graph, 19, 1e-6);
 }
 
 TEST(RelativeCovariances, OfLoneNodesAreTrivial) {
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   graph.poses.resize(1);
   const auto covariances = RelativeCovariances(graph, 0);
   ASSERT_TRUE(covariances);
@@ -118,16 +118,16 @@ TEST(RelativeCovariances, OfLoneNodesAreTrivial) {
 }
 
 TEST(RelativeCovariances, OfNodesThatAreNotThereAreErrors) {
-  const PoseGraph graph = test_support::RandomGraph(5, 0, 71);
+  const PoseGraph<SE2> graph = test_support::RandomGraph(5, 0, 71);
   EXPECT_THROW(RelativeCovariances(graph, 5), Error);
   EXPECT_THROW(RelativeCovariances(graph, -1), Error);
 }
 
 TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {
-  PoseGraph graph = test_support::RandomGraph(40, 30, 68);
-  Optimizer optimizer;
+  PoseGraph<SE2> graph = test_support::RandomGraph(40, 30, 68);
+  Optimizer<SE2> optimizer;
   optimizer.Optimize(&graph);
-  const auto marginals = optimizer.ComputeMarginals();
+  const auto marginals = optimizer.ComputeMarginals(graph);
   ASSERT_TRUE(marginals);
   const Eigen::MatrixXd expected =
       test_support::InverseWithout(test_support::DenseHessian(graph), {0});
@@ -142,16 +142,16 @@ TEST(Marginals, WithTheFirstNodeHeldAreBlocksOfTheInverse) {
 }
 
 TEST(Marginals, CrossCovariancesWithAHeldNodeAreZero) {
-  PoseGraph graph = test_support::RandomGraph(10, 5, 69);
-  Optimizer optimizer;
+  PoseGraph<SE2> graph = test_support::RandomGraph(10, 5, 69);
+  Optimizer<SE2> optimizer;
   optimizer.Optimize(&graph);
-  for (const Eigen::Matrix3d& block : optimizer.ComputeMarginals()->CrossCovariances(0)) {
+  for (const Eigen::Matrix3d& block : optimizer.ComputeMarginals(graph)->CrossCovariances(0)) {
     EXPECT_TRUE(block.isZero(0.0));
   }
 }
 
 TEST(Marginals, RespectSeveralFixedNodes) {
-  PoseGraph graph = test_support::RandomGraph(20, 10, 70);
+  PoseGraph<SE2> graph = test_support::RandomGraph(20, 10, 70);
   graph.fixed = {3, 15};
   const auto relative = RelativeCovariances(graph, 3);
   ASSERT_TRUE(relative);
@@ -166,11 +166,11 @@ TEST(ExtendRelativeCovariances, GivesWhatANewFactorisationWould) {
   for (unsigned seed = 71; seed < 77; ++seed) {
     SCOPED_TRACE(seed);
     // A graph with closures, then a tail of single links, each met exactly by its new node.
-    PoseGraph graph = test_support::RandomGraph(25, seed % 2 == 0 ? 12 : 0, seed);
-    const PoseGraph tail = test_support::RandomGraph(12, 0, seed + 100);
+    PoseGraph<SE2> graph = test_support::RandomGraph(25, seed % 2 == 0 ? 12 : 0, seed);
+    const PoseGraph<SE2> tail = test_support::RandomGraph(12, 0, seed + 100);
     auto covariances = RelativeCovariances(graph, 24);
     ASSERT_TRUE(covariances);
-    for (Constraint link : tail.constraints) {
+    for (Constraint<SE2> link : tail.constraints) {
       link.from += 24;
       link.to += 24;
       graph.poses.push_back(graph.poses.back() * link.T_from_to);

@@ -12,7 +12,7 @@ namespace loopgrid {
 namespace {
 
 /// Rows and columns of the variables, taken from a matrix over all nodes.
-Eigen::MatrixXd Reduce(const Eigen::MatrixXd& H, const NormalEquations& equations, int nodes) {
+Eigen::MatrixXd Reduce(const Eigen::MatrixXd& H, const NormalEquations<SE2>& equations, int nodes) {
   std::vector<Eigen::Index> kept;
   for (int i = 0; i < 3 * nodes; ++i) {
     if (equations.variable(i / 3) >= 0) kept.push_back(i);
@@ -20,8 +20,8 @@ Eigen::MatrixXd Reduce(const Eigen::MatrixXd& H, const NormalEquations& equation
   return H(kept, kept);
 }
 
-PoseGraph GraphWithDuplicates(unsigned seed) {
-  PoseGraph graph = test_support::RandomGraph(25, 20, seed);
+PoseGraph<SE2> GraphWithDuplicates(unsigned seed) {
+  PoseGraph<SE2> graph = test_support::RandomGraph(25, 20, seed);
   graph.constraints.push_back(graph.constraints[3]);
   graph.constraints.push_back(graph.constraints[20]);
   std::swap(graph.constraints.back().from, graph.constraints.back().to);
@@ -29,35 +29,35 @@ PoseGraph GraphWithDuplicates(unsigned seed) {
 }
 
 TEST(NormalEquations, HessianIsTheSumOverConstraintsWithoutTheHeldNode) {
-  PoseGraph graph = GraphWithDuplicates(51);
+  PoseGraph<SE2> graph = GraphWithDuplicates(51);
   for (const std::vector<int>& fixed : {std::vector<int>{}, std::vector<int>{4, 24}}) {
     graph.fixed = fixed;
-    NormalEquations equations;
+    NormalEquations<SE2> equations;
     EXPECT_TRUE(equations.SetStructure(graph));
-    equations.Linearize(graph, RobustLoss());
+    equations.Linearize(graph, {});
     EXPECT_TRUE(test_support::Dense(equations.hessian())
                     .isApprox(Reduce(test_support::DenseHessian(graph), equations, 25), 1e-12));
   }
 }
 
 TEST(NormalEquations, GradientIsTheDerivativeOfHalfF) {
-  const RobustLoss loss{LossKind::kCauchy, 1.0};
-  PoseGraph graph = GraphWithDuplicates(52);
+  const Objective objective{{LossKind::kCauchy, 1.0}};
+  PoseGraph<SE2> graph = GraphWithDuplicates(52);
   for (std::size_t k = 24; k < graph.constraints.size(); ++k) graph.constraints[k].robust = true;
-  NormalEquations equations;
+  NormalEquations<SE2> equations;
   equations.SetStructure(graph);
-  const double F = equations.Linearize(graph, loss);
-  EXPECT_DOUBLE_EQ(F, NormalEquations::Error(graph, loss));
+  const double F = equations.Linearize(graph, objective);
+  EXPECT_DOUBLE_EQ(F, TotalError(graph, objective));
   constexpr double kStep = 1e-6;
   for (int node = 1; node < 25; ++node) {
     for (int k = 0; k < 3; ++k) {
-      PoseGraph moved = graph;
+      PoseGraph<SE2> moved = graph;
       SE2& pose = moved.poses[static_cast<std::size_t>(node)];
       const SE2 before = pose;
       pose = before.Boxplus(kStep * Eigen::Vector3d::Unit(k));
-      const double above = NormalEquations::Error(moved, loss);
+      const double above = TotalError(moved, objective);
       pose = before.Boxplus(-kStep * Eigen::Vector3d::Unit(k));
-      const double slope = (above - NormalEquations::Error(moved, loss)) / (2.0 * kStep);
+      const double slope = (above - TotalError(moved, objective)) / (2.0 * kStep);
       const double b = equations.gradient()[3 * equations.variable(node) + k];
       EXPECT_NEAR(0.5 * slope, b, 1e-5 * (std::abs(b) + 1.0)) << "node " << node;
     }
@@ -65,24 +65,24 @@ TEST(NormalEquations, GradientIsTheDerivativeOfHalfF) {
 }
 
 TEST(NormalEquations, ErrorWithoutLossIsTotalChi2) {
-  const PoseGraph graph = test_support::RandomGraph(30, 20, 53);
-  EXPECT_DOUBLE_EQ(NormalEquations::Error(graph, {LossKind::kHuber, 0.01}), TotalChi2(graph));
+  const PoseGraph<SE2> graph = test_support::RandomGraph(30, 20, 53);
+  EXPECT_DOUBLE_EQ(TotalError(graph, {{LossKind::kHuber, 0.01}}), TotalChi2(graph));
 }
 
 TEST(NormalEquations, GrownGraphGivesWhatAFreshObjectGives) {
-  const PoseGraph whole = test_support::RandomGraph(30, 40, 54);
-  PoseGraph graph;
-  NormalEquations grown;
+  const PoseGraph<SE2> whole = test_support::RandomGraph(30, 40, 54);
+  PoseGraph<SE2> graph;
+  NormalEquations<SE2> grown;
   for (std::size_t nodes = 1; nodes <= 30; ++nodes) {
     graph.poses.assign(whole.poses.begin(),
                        whole.poses.begin() + static_cast<std::ptrdiff_t>(nodes));
-    for (const Constraint& constraint : whole.constraints) {
+    for (const Constraint<SE2>& constraint : whole.constraints) {
       const auto newest = static_cast<std::size_t>(std::max(constraint.from, constraint.to));
       if (newest + 1 == nodes) graph.constraints.push_back(constraint);
     }
     EXPECT_EQ(grown.SetStructure(graph), nodes > 1);  // the first node is held: no variable
     EXPECT_FALSE(grown.SetStructure(graph)) << "nothing has changed";
-    grown.Linearize(graph, RobustLoss());
+    grown.Linearize(graph, {});
     EXPECT_TRUE(
         test_support::Dense(grown.hessian())
             .isApprox(Reduce(test_support::DenseHessian(graph), grown, static_cast<int>(nodes)),
@@ -91,16 +91,16 @@ TEST(NormalEquations, GrownGraphGivesWhatAFreshObjectGives) {
 }
 
 TEST(NormalEquations, OtherChangesOfTheGraphAreNoticed) {
-  PoseGraph graph = test_support::RandomGraph(12, 10, 55);
-  const auto expect_right = [&graph](NormalEquations* equations) {
+  PoseGraph<SE2> graph = test_support::RandomGraph(12, 10, 55);
+  const auto expect_right = [&graph](NormalEquations<SE2>* equations) {
     equations->SetStructure(graph);
-    equations->Linearize(graph, RobustLoss());
+    equations->Linearize(graph, {});
     EXPECT_TRUE(test_support::Dense(equations->hessian())
                     .isApprox(Reduce(test_support::DenseHessian(graph), *equations,
                                      static_cast<int>(graph.poses.size())),
                               1e-12));
   };
-  NormalEquations equations;
+  NormalEquations<SE2> equations;
   expect_right(&equations);
   graph.constraints.erase(graph.constraints.begin() + 12);  // a closure taken out again
   expect_right(&equations);

@@ -17,8 +17,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-PoseGraph GraphWithEdges(int nodes, const std::vector<std::pair<int, int>>& edges) {
-  PoseGraph graph;
+PoseGraph<SE2> GraphWithEdges(int nodes, const std::vector<std::pair<int, int>>& edges) {
+  PoseGraph<SE2> graph;
   graph.poses.resize(static_cast<std::size_t>(nodes));
   for (const auto& [from, to] : edges) {
     graph.constraints.emplace_back();
@@ -29,23 +29,23 @@ PoseGraph GraphWithEdges(int nodes, const std::vector<std::pair<int, int>>& edge
 }
 
 TEST(ConnectedComponents, AreNamedByTheirFirstNode) {
-  EXPECT_THAT(ConnectedComponents(GraphWithEdges(7, {{5, 1}, {4, 2}, {1, 3}, {3, 5}})),
+  EXPECT_THAT(ConnectedComponents(GraphWithEdges(7, {{5, 1}, {4, 2}, {1, 3}, {3, 5}})).of_node,
               ElementsAre(0, 1, 2, 1, 2, 1, 6));
 }
 
 TEST(ConnectedComponents, OfAnEmptyGraphAreNone) {
-  EXPECT_THAT(ConnectedComponents(PoseGraph()), IsEmpty());
+  EXPECT_THAT(ConnectedComponents(PoseGraph<SE2>()).of_node, IsEmpty());
 }
 
 TEST(HeldNodes, AreTheFirstOfEachComponentWithoutAFixedNode) {
-  PoseGraph graph = GraphWithEdges(7, {{5, 1}, {4, 2}, {1, 3}, {3, 5}});
+  PoseGraph<SE2> graph = GraphWithEdges(7, {{5, 1}, {4, 2}, {1, 3}, {3, 5}});
   EXPECT_THAT(HeldNodes(graph, ConnectedComponents(graph)), ElementsAre(0, 1, 2, 6));
   graph.fixed = {5, 3};
   EXPECT_THAT(HeldNodes(graph, ConnectedComponents(graph)), ElementsAre(0, 2, 3, 5, 6));
 }
 
 TEST(Validate, AcceptsEmptyGraphsLoneNodesAndDuplicateConstraints) {
-  Validate(PoseGraph());
+  Validate(PoseGraph<SE2>());
   Validate(GraphWithEdges(1, {}));
   Validate(GraphWithEdges(3, {{0, 1}, {0, 1}, {1, 0}}));
 }
@@ -54,24 +54,26 @@ TEST(Validate, NamesWhatIsWrong) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   struct Case {
-    std::function<void(PoseGraph*)> spoil;
+    std::function<void(PoseGraph<SE2>*)> spoil;
     std::string message;
   };
   const std::vector<Case> cases = {
-      {[&](PoseGraph* g) { g->poses[2] = SE2(nan, 0, 0); }, "pose of node 2"},
-      {[&](PoseGraph* g) { g->poses[1] = SE2(0, 0, infinity); }, "pose of node 1"},
-      {[&](PoseGraph* g) { g->constraints[1].T_from_to = SE2(0, infinity, 0); }, "constraint 1"},
-      {[&](PoseGraph* g) { g->constraints[0].information(2, 2) = nan; }, "constraint 0"},
-      {[&](PoseGraph* g) { g->constraints[0].to = 3; }, "constraint 0 refers to node 3"},
-      {[&](PoseGraph* g) { g->constraints[1].from = -1; }, "constraint 1 refers to node -1"},
-      {[&](PoseGraph* g) { g->constraints[1].from = 2; }, "constraint 1 joins node 2 to itself"},
-      {[&](PoseGraph* g) {
+      {[&](PoseGraph<SE2>* g) { g->poses[2] = SE2(nan, 0, 0); }, "pose of node 2"},
+      {[&](PoseGraph<SE2>* g) { g->poses[1] = SE2(0, 0, infinity); }, "pose of node 1"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[1].T_from_to = SE2(0, infinity, 0); },
+       "constraint 1"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[0].information(2, 2) = nan; }, "constraint 0"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[0].to = 3; }, "constraint 0 refers to node 3"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[1].from = -1; }, "constraint 1 refers to node -1"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[1].from = 2; },
+       "constraint 1 joins node 2 to itself"},
+      {[&](PoseGraph<SE2>* g) {
          g->fixed = {0, 3};
        },
-       "fixed nodes refers to node 3"},
+       "fixed node 1 refers to node 3"},
   };
   for (const Case& c : cases) {
-    PoseGraph graph = GraphWithEdges(3, {{0, 1}, {1, 2}});
+    PoseGraph<SE2> graph = GraphWithEdges(3, {{0, 1}, {1, 2}});
     c.spoil(&graph);
     try {
       Validate(graph);

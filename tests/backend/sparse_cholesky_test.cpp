@@ -96,12 +96,12 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsIndefinite) {
 
 TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
   // No node held: the whole graph can move, so the Hessian has rank 3 (n - 1).
-  const PoseGraph graph = test_support::RandomGraph(40, 30, 35);
+  const PoseGraph<SE2> graph = test_support::RandomGraph(40, 30, 35);
   SymmetricBlockMatrix<3> H;
   H.Resize(40);
   const Eigen::MatrixXd dense = test_support::DenseHessian(graph);
   for (int i = 0; i < 40; ++i) H.diagonal(i) = dense.block<3, 3>(3 * i, 3 * i);
-  for (const Constraint& constraint : graph.constraints) {
+  for (const Constraint<SE2>& constraint : graph.constraints) {
     const auto [row, col] = std::minmax({constraint.from, constraint.to});
     H.off_diagonal(H.FindOrAddBlock(row, col)) = dense.block<3, 3>(3 * row, 3 * col);
   }
@@ -112,10 +112,10 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsSingular) {
 }
 
 TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {
-  const PoseGraph graph = test_support::RandomGraph(700, 500, 36);
-  NormalEquations equations;
+  const PoseGraph<SE2> graph = test_support::RandomGraph(700, 500, 36);
+  NormalEquations<SE2> equations;
   equations.SetStructure(graph);
-  equations.Linearize(graph, RobustLoss());
+  equations.Linearize(graph, {});
   SparseCholesky<3> cholesky;
   cholesky.Analyze(equations.hessian());
   ASSERT_TRUE(cholesky.Factorize(equations.hessian()));
@@ -127,12 +127,12 @@ TEST(SparseCholesky, AgreesWithCholmodOnAPoseGraph) {
 }
 
 TEST(SparseCholesky, GivesTheSameBitsTwice) {
-  const PoseGraph graph = test_support::RandomGraph(300, 300, 37);
+  const PoseGraph<SE2> graph = test_support::RandomGraph(300, 300, 37);
   Eigen::VectorXd solutions[2];
   for (Eigen::VectorXd& solution : solutions) {
-    NormalEquations equations;
+    NormalEquations<SE2> equations;
     equations.SetStructure(graph);
-    equations.Linearize(graph, RobustLoss());
+    equations.Linearize(graph, {});
     SparseCholesky<3> cholesky;
     cholesky.Analyze(equations.hessian());
     ASSERT_TRUE(cholesky.Factorize(equations.hessian()));

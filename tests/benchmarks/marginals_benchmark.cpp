@@ -16,38 +16,38 @@ namespace {
 using test_support::NamedGraph;
 
 struct Factored {
-  explicit Factored(const PoseGraph& graph) {
+  explicit Factored(const PoseGraph<SE2>& graph) {
     equations.SetStructure(graph);
-    equations.Linearize(graph, RobustLoss());
+    equations.Linearize(graph, {});
     factor.Analyze(equations.hessian());
     is_definite = factor.Factorize(equations.hessian());
   }
-  NormalEquations equations;
+  NormalEquations<SE2> equations;
   SparseCholesky<3> factor;
   bool is_definite = false;
 };
 
-void Diagonal(benchmark::State& state, const PoseGraph& graph) {
+void Diagonal(benchmark::State& state, const PoseGraph<SE2>& graph) {
   const Factored factored(graph);
   if (!factored.is_definite) state.SkipWithError("indefinite");
   for (auto _ : state) benchmark::DoNotOptimize(InverseDiagonal(factored.factor));
 }
 
-void RelativeToLast(benchmark::State& state, const PoseGraph& graph) {
+void RelativeToLast(benchmark::State& state, const PoseGraph<SE2>& graph) {
   const Factored factored(graph);
   if (!factored.is_definite) state.SkipWithError("indefinite");
   const int last = static_cast<int>(graph.poses.size()) - 1;
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        Marginals(graph.poses, factored.equations, factored.factor).RelativeTo(last));
+        Marginals<SE2>(graph.poses, factored.equations, factored.factor).RelativeTo(last));
   }
 }
 
 const bool kRegistered = [] {
   static const std::vector<NamedGraph> graphs = test_support::BenchmarkGraphs();
   for (const NamedGraph& named : graphs) {
-    const PoseGraph& graph = named.graph;
-    const auto add = [&](const char* what, void (*run)(benchmark::State&, const PoseGraph&)) {
+    const PoseGraph<SE2>& graph = named.graph;
+    const auto add = [&](const char* what, void (*run)(benchmark::State&, const PoseGraph<SE2>&)) {
       const std::string name = std::string(what) + "/" + named.name;
       benchmark::RegisterBenchmark(name.c_str(), [run, &graph](benchmark::State& state) {
         run(state, graph);

@@ -17,13 +17,13 @@ namespace {
 
 using test_support::NamedGraph;
 
-void ToOptimum(benchmark::State& state, const PoseGraph& start) {
+void ToOptimum(benchmark::State& state, const PoseGraph<SE2>& start) {
   OptimizerResult result;
   for (auto _ : state) {
     state.PauseTiming();
-    PoseGraph graph = start;
+    PoseGraph<SE2> graph = start;
     state.ResumeTiming();
-    result = Optimizer().Optimize(&graph);
+    result = Optimizer<SE2>().Optimize(&graph);
   }
   state.counters["iterations"] = result.iterations;
   state.counters["F"] = result.final_error;
@@ -34,27 +34,27 @@ void ToOptimum(benchmark::State& state, const PoseGraph& start) {
 
 /// Linearised once, for the benchmarks of the parts.
 struct System {
-  explicit System(const PoseGraph& graph) {
+  explicit System(const PoseGraph<SE2>& graph) {
     equations.SetStructure(graph);
-    equations.Linearize(graph, RobustLoss());
+    equations.Linearize(graph, {});
   }
-  NormalEquations equations;
+  NormalEquations<SE2> equations;
 };
 
-void Linearize(benchmark::State& state, const PoseGraph& graph) {
+void Linearize(benchmark::State& state, const PoseGraph<SE2>& graph) {
   System system(graph);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(system.equations.Linearize(graph, RobustLoss()));
+    benchmark::DoNotOptimize(system.equations.Linearize(graph, {}));
   }
 }
 
-void Analyze(benchmark::State& state, const PoseGraph& graph) {
+void Analyze(benchmark::State& state, const PoseGraph<SE2>& graph) {
   const System system(graph);
   for (auto _ : state) SparseCholesky<3>().Analyze(system.equations.hessian());
 }
 
 template <typename Solver>
-void Factorize(benchmark::State& state, const PoseGraph& graph) {
+void Factorize(benchmark::State& state, const PoseGraph<SE2>& graph) {
   const System system(graph);
   Solver solver;
   solver.Analyze(system.equations.hessian());
@@ -63,7 +63,7 @@ void Factorize(benchmark::State& state, const PoseGraph& graph) {
   }
 }
 
-void Solve(benchmark::State& state, const PoseGraph& graph) {
+void Solve(benchmark::State& state, const PoseGraph<SE2>& graph) {
   const System system(graph);
   SparseCholesky<3> factor;
   factor.Analyze(system.equations.hessian());
@@ -72,15 +72,15 @@ void Solve(benchmark::State& state, const PoseGraph& graph) {
 }
 
 /// The nodes one after the other, each with the constraints to those before it.
-void NodeByNode(benchmark::State& state, const PoseGraph& whole) {
-  std::vector<Constraint> constraints = whole.constraints;
+void NodeByNode(benchmark::State& state, const PoseGraph<SE2>& whole) {
+  std::vector<Constraint<SE2>> constraints = whole.constraints;
   std::stable_sort(constraints.begin(), constraints.end(), [](const auto& a, const auto& b) {
     return std::max(a.from, a.to) < std::max(b.from, b.to);
   });
   double error = 0.0;
   for (auto _ : state) {
-    PoseGraph graph;
-    Optimizer optimizer;
+    PoseGraph<SE2> graph;
+    Optimizer<SE2> optimizer;
     auto next = constraints.begin();
     for (int node = 0; node < static_cast<int>(whole.poses.size()); ++node) {
       graph.poses.push_back(whole.poses[static_cast<std::size_t>(node)]);
@@ -101,8 +101,8 @@ const bool kRegistered = [] {
   using benchmark::RegisterBenchmark;
   static const std::vector<NamedGraph> graphs = test_support::BenchmarkGraphs();
   for (const NamedGraph& named : graphs) {
-    const PoseGraph& graph = named.graph;
-    const auto add = [&](const char* what, void (*run)(benchmark::State&, const PoseGraph&)) {
+    const PoseGraph<SE2>& graph = named.graph;
+    const auto add = [&](const char* what, void (*run)(benchmark::State&, const PoseGraph<SE2>&)) {
       const std::string name = std::string(what) + "/" + named.name;
       return RegisterBenchmark(name.c_str(),
                                [run, &graph](benchmark::State& state) { run(state, graph); })

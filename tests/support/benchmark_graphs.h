@@ -12,7 +12,7 @@ namespace loopgrid::test_support {
 
 struct NamedGraph {
   std::string name;
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
 };
 
 /// What benchmarks of the back-end run on: a generated city and, where LOOPGRID_DATA names the

@@ -22,10 +22,10 @@ inline Eigen::Matrix3d RandomInformation(std::mt19937* random) {
 }
 
 /// A constraint between two nodes: their true relative pose with noise as small as it says.
-inline Constraint NoisyConstraint(const std::vector<SE2>& truth, int from, int to,
-                                  std::mt19937* random) {
+inline Constraint<SE2> NoisyConstraint(const std::vector<SE2>& truth, int from, int to,
+                                       std::mt19937* random) {
   std::normal_distribution<double> normal;
-  Constraint constraint;
+  Constraint<SE2> constraint;
   constraint.from = from;
   constraint.to = to;
   constraint.information = RandomInformation(random);
@@ -39,11 +39,11 @@ inline Constraint NoisyConstraint(const std::vector<SE2>& truth, int from, int t
 
 /// A robot walks in a room: `nodes` nodes in sequence, `closures` more constraints between any two
 /// of them, poses from the sequence alone.
-inline PoseGraph RandomGraph(int nodes, int closures, unsigned seed) {
+inline PoseGraph<SE2> RandomGraph(int nodes, int closures, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> turn(-1.0, 1.0);
   std::vector<SE2> truth = {SE2(2.0, -1.0, 0.5)};
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   graph.poses = truth;
   for (int i = 1; i < nodes; ++i) {
     truth.push_back(truth.back() * SE2(1.0, 0.2 * turn(random), turn(random)));
@@ -62,8 +62,8 @@ inline PoseGraph RandomGraph(int nodes, int closures, unsigned seed) {
 }
 
 /// One hub with `leaves` nodes around it, each joined to the hub alone; the hub is the last node.
-inline PoseGraph StarGraph(int leaves) {
-  PoseGraph graph;
+inline PoseGraph<SE2> StarGraph(int leaves) {
+  PoseGraph<SE2> graph;
   for (int i = 0; i < leaves; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / leaves;
     graph.poses.emplace_back(std::cos(angle), std::sin(angle), angle);
@@ -74,11 +74,11 @@ inline PoseGraph StarGraph(int leaves) {
 }
 
 /// The Hessian of F over all nodes, dense, summed up as the tutorial writes it.
-inline Eigen::MatrixXd DenseHessian(const PoseGraph& graph) {
+inline Eigen::MatrixXd DenseHessian(const PoseGraph<SE2>& graph) {
   const auto size = static_cast<Eigen::Index>(3 * graph.poses.size());
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
-  for (const Constraint& constraint : graph.constraints) {
-    const LinearizedConstraint linear =
+  for (const Constraint<SE2>& constraint : graph.constraints) {
+    const LinearizedConstraint<SE2> linear =
         Linearize(graph.poses[static_cast<std::size_t>(constraint.from)],
                   graph.poses[static_cast<std::size_t>(constraint.to)], constraint.T_from_to);
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3, size);

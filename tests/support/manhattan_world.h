@@ -16,7 +16,7 @@ namespace loopgrid::test_support {
 
 /// A robot drives along the streets of a square city, a node at each crossing; where it has been
 /// before, constraints link the node to (at most `closures`) earlier ones. Poses from odometry.
-inline PoseGraph ManhattanWorld(int nodes, int closures, unsigned seed) {
+inline PoseGraph<SE2> ManhattanWorld(int nodes, int closures, unsigned seed) {
   const Eigen::Vector3d sigma(0.05, 0.05, 0.02);
   const Eigen::Matrix3d information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   const int side = std::max(2, static_cast<int>(std::sqrt(nodes / 3.0)));
@@ -24,7 +24,7 @@ inline PoseGraph ManhattanWorld(int nodes, int closures, unsigned seed) {
   std::normal_distribution<double> normal;
   std::vector<SE2> truth;
   std::map<std::pair<int, int>, std::vector<int>> visits;
-  PoseGraph graph;
+  PoseGraph<SE2> graph;
   const auto measure = [&](int from, int to) {
     const SE2 exact =
         truth[static_cast<std::size_t>(from)].Inverse() * truth[static_cast<std::size_t>(to)];

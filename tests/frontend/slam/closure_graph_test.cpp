@@ -20,36 +20,36 @@ using test_support::RandomGraph;
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 // Where the nodes of RandomGraph(nodes, 0, seed) were before noise, but for its few per cent.
-void AddChain(const PoseGraph& chain, int from, int to, ClosureGraph* graph) {
+void AddChain(const PoseGraph<SE2>& chain, int from, int to, ClosureGraph* graph) {
   for (int i = from; i < to; ++i) {
     if (i == 0) {
       graph->AddNode(chain.poses[0], SE2(), Eigen::Matrix3d::Zero());
       continue;
     }
-    const Constraint& step = chain.constraints[Index(i - 1)];
+    const Constraint<SE2>& step = chain.constraints[Index(i - 1)];
     const SE2& last = graph->graph().poses.back();
     graph->AddNode(last * step.T_from_to, step.T_from_to, step.information.inverse());
   }
 }
 
 // A closure that says what the chain says, but for its own small noise.
-Constraint TrueClosure(const PoseGraph& chain, int from, int to, unsigned seed) {
+Constraint<SE2> TrueClosure(const PoseGraph<SE2>& chain, int from, int to, unsigned seed) {
   std::mt19937 random(seed);
-  Constraint closure = NoisyConstraint(chain.poses, from, to, &random);
+  Constraint<SE2> closure = NoisyConstraint(chain.poses, from, to, &random);
   closure.robust = true;
   return closure;
 }
 
-Constraint FalseClosure(const PoseGraph& chain, int from, int to, unsigned seed) {
-  Constraint closure = TrueClosure(chain, from, to, seed);
+Constraint<SE2> FalseClosure(const PoseGraph<SE2>& chain, int from, int to, unsigned seed) {
+  Constraint<SE2> closure = TrueClosure(chain, from, to, seed);
   closure.T_from_to = closure.T_from_to * SE2(6.0, -8.0, 1.5);
   return closure;
 }
 
 // Chains whose steps are sure enough to speak against a wrong closure.
-PoseGraph Chain(int nodes, unsigned seed) {
-  PoseGraph chain = RandomGraph(nodes, 0, seed);
-  for (Constraint& step : chain.constraints) step.information *= 100.0;
+PoseGraph<SE2> Chain(int nodes, unsigned seed) {
+  PoseGraph<SE2> chain = RandomGraph(nodes, 0, seed);
+  for (Constraint<SE2>& step : chain.constraints) step.information *= 100.0;
   return chain;
 }
 
@@ -83,7 +83,7 @@ TEST(ClosureGraph, TheFirstNodeTakesNoConstraint) {
 TEST(ClosureGraph, CovariancesAreTheBackendsAlongChainsAndClosures) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
-    const PoseGraph chain = Chain(60, seed);
+    const PoseGraph<SE2> chain = Chain(60, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 20, &graph);
     ExpectCovariancesAreTheBackends(graph);
@@ -104,10 +104,10 @@ TEST(ClosureGraph, CovariancesAreTheBackendsAlongChainsAndClosures) {
 }
 
 TEST(ClosureGraph, KeepsARightClosureAndGoesByIt) {
-  const PoseGraph chain = Chain(30, 11);
+  const PoseGraph<SE2> chain = Chain(30, 11);
   ClosureGraph graph;
   AddChain(chain, 0, 30, &graph);
-  Constraint closure = TrueClosure(chain, 3, 28, 11);
+  Constraint<SE2> closure = TrueClosure(chain, 3, 28, 11);
   closure.T_from_to = closure.T_from_to * SE2(0.02, -0.01, 0.005);
   const double before = graph.Chi2(closure);
   ASSERT_TRUE(graph.TryClosures(std::vector{closure}));
@@ -119,11 +119,11 @@ TEST(ClosureGraph, KeepsARightClosureAndGoesByIt) {
 TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
   for (unsigned seed = 20; seed < 30; ++seed) {
     SCOPED_TRACE(seed);
-    const PoseGraph chain = Chain(40, seed);
+    const PoseGraph<SE2> chain = Chain(40, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 40, &graph);
     ASSERT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 4, 35, seed)}));
-    const PoseGraph before = graph.graph();
+    const PoseGraph<SE2> before = graph.graph();
     EXPECT_FALSE(graph.TryClosures(std::vector{FalseClosure(chain, 2, 39, seed)}));
     ExpectSamePoses(graph.graph().poses, before.poses);
     EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size());
@@ -136,11 +136,11 @@ TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
 TEST(ClosureGraph, OfThreeRightAndAWrongClosureKeepsTheRightOnes) {
   for (unsigned seed = 20; seed < 30; ++seed) {
     SCOPED_TRACE(seed);
-    const PoseGraph chain = Chain(40, seed);
+    const PoseGraph<SE2> chain = Chain(40, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 40, &graph);
-    std::vector<Constraint> removed;
-    const std::vector<Constraint> closures = {
+    std::vector<Constraint<SE2>> removed;
+    const std::vector<Constraint<SE2>> closures = {
         TrueClosure(chain, 5, 36, seed), FalseClosure(chain, 2, 39, seed),
         TrueClosure(chain, 7, 34, seed), TrueClosure(chain, 3, 37, seed)};
     ASSERT_TRUE(graph.TryClosures(closures, &removed));
@@ -152,19 +152,19 @@ TEST(ClosureGraph, OfThreeRightAndAWrongClosureKeepsTheRightOnes) {
 }
 
 TEST(ClosureGraph, AWrongClosureGivesWayToTheRightOnesThatComeLater) {
-  const PoseGraph chain = Chain(40, 31);
+  const PoseGraph<SE2> chain = Chain(40, 31);
   ClosureGraph graph;
   // Nothing speaks against it yet: its own part of the chain is loose.
   AddChain(chain, 0, 40, &graph);
-  Constraint wrong = TrueClosure(chain, 3, 30, 31);
+  Constraint<SE2> wrong = TrueClosure(chain, 3, 30, 31);
   wrong.T_from_to = wrong.T_from_to * SE2(0.6, 0.4, 0.1);
   ASSERT_TRUE(graph.TryClosures(std::vector{wrong}));
-  std::vector<Constraint> right;
+  std::vector<Constraint<SE2>> right;
   for (int i = 0; i < 4; ++i) {
     right.push_back(TrueClosure(chain, i + 1, 29 + i, 31));
     right.back().information *= 100.0;
   }
-  std::vector<Constraint> removed;
+  std::vector<Constraint<SE2>> removed;
   ASSERT_TRUE(graph.TryClosures(right, &removed));
   ASSERT_EQ(removed.size(), 1U);
   EXPECT_EQ(removed[0].from, wrong.from);
@@ -175,15 +175,15 @@ TEST(ClosureGraph, AWrongClosureGivesWayToTheRightOnesThatComeLater) {
 TEST(ClosureGraph, SettleTakesOutThePlantedOutlierAmongGoodLinks) {
   for (unsigned seed = 30; seed < 36; ++seed) {
     SCOPED_TRACE(seed);
-    const PoseGraph chain = Chain(50, seed);
+    const PoseGraph<SE2> chain = Chain(50, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 50, &graph);
-    std::vector<Constraint> links;
+    std::vector<Constraint<SE2>> links;
     for (int i = 0; i < 20; ++i) links.push_back(TrueClosure(chain, i, 49 - i, seed));
     links[7] = FalseClosure(chain, 7, 42, seed);
-    const std::vector<Constraint> removed = graph.Settle(links);
+    const std::vector<Constraint<SE2>> removed = graph.Settle(links);
     EXPECT_TRUE(std::any_of(removed.begin(), removed.end(),
-                            [](const Constraint& c) { return c.from == 7 && c.to == 42; }));
+                            [](const Constraint<SE2>& c) { return c.from == 7 && c.to == 42; }));
     EXPECT_LE(removed.size(), 5U);  // it may take some that it pulled hard with it
     EXPECT_EQ(graph.graph().constraints.size(), 49U + 20U - removed.size());
     for (int i = 0; i < 50; ++i) {
@@ -200,7 +200,7 @@ TEST(ClosureGraph, SettlesWithoutLinksClosuresOrNodes) {
   one.AddNode(SE2(), SE2(), Eigen::Matrix3d::Zero());
   EXPECT_TRUE(one.Settle({}).empty());
   EXPECT_TRUE(one.relative_covariances().at(0).isZero(0.0));
-  const PoseGraph chain = Chain(10, 40);
+  const PoseGraph<SE2> chain = Chain(10, 40);
   ClosureGraph graph;
   AddChain(chain, 0, 10, &graph);
   const std::vector<SE2> before = graph.graph().poses;

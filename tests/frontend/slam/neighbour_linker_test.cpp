@@ -23,10 +23,10 @@ TEST(LinkNeighbours, JoinsThePassesByOnePlaceWhereTheyReallyAre) {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
   Walk walk;
   walk.Follow(DistinctiveRoom(), truth, SE2(0.002, 0.001, 0.0003));  // off by 5 cm a round
-  const std::vector<Constraint> links = LinkNeighbours(walk.nodes());
+  const std::vector<Constraint<SE2>> links = LinkNeighbours(walk.nodes());
   EXPECT_GE(links.size(), 30U);
   std::vector<int> linked;
-  for (const Constraint& link : links) {
+  for (const Constraint<SE2>& link : links) {
     SCOPED_TRACE(link.from * 1000 + link.to);
     EXPECT_TRUE(link.robust);
     EXPECT_GT(std::abs(link.to - link.from), NeighbourLinkerOptions().same_pass);
@@ -55,7 +55,7 @@ TEST(LinkNeighbours, SparesNodesThatHaveAClosureNearby) {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
   Walk walk;
   walk.Follow(DistinctiveRoom(), truth);
-  std::vector<Constraint> closures;
+  std::vector<Constraint<SE2>> closures;
   for (int i = 0; i < kNodesARound; ++i) {
     const int again = i + kNodesARound;
     closures.push_back({i, again, truth[Index(i)].Inverse() * truth[Index(again)],
@@ -63,9 +63,9 @@ TEST(LinkNeighbours, SparesNodesThatHaveAClosureNearby) {
   }
   const std::size_t without = LinkNeighbours(walk.nodes()).size();
   ASSERT_TRUE(walk.graph().TryClosures(closures));
-  const std::vector<Constraint> links = LinkNeighbours(walk.nodes());
+  const std::vector<Constraint<SE2>> links = LinkNeighbours(walk.nodes());
   EXPECT_LT(links.size(), without);
-  for (const Constraint& link : links) {
+  for (const Constraint<SE2>& link : links) {
     const int closed_with =
         link.to < kNodesARound ? link.to + kNodesARound : link.to - kNodesARound;
     EXPECT_GT(std::abs(link.from - closed_with), NeighbourLinkerOptions().already_linked);

@@ -101,7 +101,7 @@ TEST(Slam, FollowsADriveThroughAnOfficeAndClosesItsLoops) {
     EXPECT_LT(record.T_from_to.Boxminus(from.Inverse() * to).norm(), 0.15)
         << record.from << " - " << record.to;
     const auto& constraints = slam.graph().constraints;
-    EXPECT_TRUE(std::any_of(constraints.begin(), constraints.end(), [&](const Constraint& c) {
+    EXPECT_TRUE(std::any_of(constraints.begin(), constraints.end(), [&](const Constraint<SE2>& c) {
       return c.from == record.from && c.to == record.to && c.robust;
     }));
   }

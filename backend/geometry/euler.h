@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace loopgrid {
+
+/// The rotation R = Rz(yaw) * Ry(pitch) * Rx(roll) of (roll, pitch, yaw), radians.
+inline Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& angles) {
+  return Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
+}
+
+/// (roll, pitch, yaw) of a rotation, pitch in [-pi/2, pi/2], the others in [-pi, pi]. Where pitch
+/// is at its ends, only a combination of the two others is known; roll is 0 there.
+inline Eigen::Vector3d RollPitchYaw(const Eigen::Quaterniond& q) {
+  const Eigen::Matrix3d R = q.toRotationMatrix();
+  const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), cos_pitch);
+  if (cos_pitch < 1e-12) return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+/// The matrix that takes the rates of (roll, pitch, yaw) to the angular velocity in the body's own
+/// frame. Singular where pitch is +-pi/2: gimbal lock.
+inline Eigen::Matrix3d BodyRates(const Eigen::Vector3d& angles) {
+  const double sr = std::sin(angles.x());
+  const double cr = std::cos(angles.x());
+  const double sp = std::sin(angles.y());
+  const double cp = std::cos(angles.y());
+  return (Eigen::Matrix3d() << 1.0, 0.0, -sp, 0.0, cr, sr * cp, 0.0, -sr, cr * cp).finished();
+}
+
+}  // namespace loopgrid
