@@ -28,8 +28,8 @@ constexpr double kSmallestScale = 1e-9;
 constexpr double kGoodModel = 0.1;
 constexpr double kSlow = 0.1;
 
-// The dog leg's trust region grows when F falls by more than the first share of what was promised,
-// shrinks below the second.
+// When F falls by more than the first share of what was promised, the next step may be bolder; by
+// less than the second, it has to be more careful.
 constexpr double kTrusted = 0.75;
 constexpr double kDistrusted = 0.25;
 constexpr double kSmallestRadius = 1e-12;
@@ -359,12 +359,9 @@ typename Optimizer<Pose>::Trial Optimizer<Pose>::TryFactor(PoseGraph<Pose>* grap
   double promised = -equations_.gradient().dot(dx);
   if (damping_.size() > 0) promised += dx.dot(damping_.cwiseProduct(dx));
   if (promised > most_promised) return Trial::kRejected;
-  const double before = result->final_error;
   const Trial trial = TryStep(graph, dx, promised, result);
-  if (trial == Trial::kTaken && result->damping == 0.0) {
-    const double decrease = before - result->final_error;
-    factor_fits_ = std::abs(decrease - promised) < kGoodModel * promised;
-  }
+  factor_fits_ =
+      trial == Trial::kTaken && result->damping == 0.0 && std::abs(last_gain_ - 1.0) < kGoodModel;
   return trial;
 }
 
@@ -406,7 +403,6 @@ std::optional<Termination> Optimizer<Pose>::DogLegStep(PoseGraph<Pose>* graph,
       }
     }
     const double promised = -2.0 * b.dot(dx) - dx.dot(H * dx);
-    const double before = result->final_error;
     const Trial trial = TryStep(graph, dx, promised, result);
     if (trial == Trial::kNegligible) return Termination::kStalled;
     const double length = norm(dx);
@@ -414,9 +410,8 @@ std::optional<Termination> Optimizer<Pose>::DogLegStep(PoseGraph<Pose>* graph,
       radius_ = kDistrusted * length;
       continue;
     }
-    const double share = (before - result->final_error) / promised;
-    if (share > kTrusted) radius_ = std::max(radius_, 3.0 * length);
-    if (share < kDistrusted) radius_ = 0.5 * length;
+    if (last_gain_ > kTrusted) radius_ = std::max(radius_, 3.0 * length);
+    if (last_gain_ < kDistrusted) radius_ = 0.5 * length;
     damping = Weaker(damping);
     return std::nullopt;
   }
@@ -436,9 +431,10 @@ typename Optimizer<Pose>::Trial Optimizer<Pose>::TryStep(PoseGraph<Pose>* graph,
     Restore(before_, graph);
     return Trial::kRejected;
   }
-  result->final_error = error;
+  last_gain_ = (result->final_error - error) / promised;
   last_promised_ = promised;
   last_step_ = dx.norm();
+  result->final_error = error;
   return Trial::kTaken;
 }
 

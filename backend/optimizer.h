@@ -148,6 +148,7 @@ class Optimizer {
   bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
   bool factor_fits_ = false;        // factor_ is of the last point, and good enough for this one
   double last_promised_ = 0.0;      // decrease of F, by the last step
+  double last_gain_ = 0.0;          // the share of that which came true
   double last_step_ = 0.0;          // its length
   double radius_ = 0.0;             // of the dog leg's trust region
   State before_;                    // the step being tried

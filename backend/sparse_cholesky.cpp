@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "backend/frontal_kernels.h"
+#include "backend/ordering.h"
 
 namespace loopgrid {
 namespace {
@@ -15,6 +16,9 @@ constexpr double kSmallestPivot = 1e-13;
 /// When the factor has this many times the entries per block of the matrix that it had when the
 /// order was found, a new order is worth its time.
 constexpr double kWorthOrdering = 1.2;
+
+/// Products of blocks from which on the better order of nested dissection pays for its own time.
+constexpr double kWorthDissecting = 1e6;
 
 using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
@@ -33,6 +37,10 @@ template <int kDim>
 void SparseCholesky<kDim>::Analyze(const Matrix& H) {
   if (!KeepOrder(H)) {
     structure_ = AnalyzeFactor(MinimumDegreeOrder(H.cols(), H.places()), H.places());
+    if (structure_.Operations() > kWorthDissecting) {
+      SymbolicFactor other = AnalyzeFactor(NestedDissectionOrder(H.cols(), H.places()), H.places());
+      if (other.Operations() < structure_.Operations()) structure_ = std::move(other);
+    }
     ordered_fill_ = Fill(structure_, H.block_count());
   }
   const int count = structure_.supernode_count();

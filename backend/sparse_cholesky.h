@@ -19,8 +19,9 @@ class SparseCholesky {
   using Matrix = SymmetricBlockMatrix<kDim>;
   using Block = typename Matrix::Block;
 
-  /// Orders the blocks and finds the structure of the factor. For a matrix that has grown since the
-  /// last call the order is kept, new columns last, while that costs little fill.
+  /// Orders the blocks (minimum degree, for large matrices nested dissection too) and finds the
+  /// structure of the factor. For a matrix that has grown since the last call the order is kept,
+  /// new columns last, while that costs little fill.
   void Analyze(const Matrix& H);
 
   /// Factorises H, plus a diagonal matrix if its entries are given. H must have the pattern that

@@ -1,10 +1,7 @@
 #include "backend/symbolic_factor.h"
 
-#include <cholmod.h>
-
 #include <algorithm>
 #include <limits>
-#include <new>
 #include <numeric>
 #include <utility>
 
@@ -209,27 +206,15 @@ int SymbolicFactor::PositionInFront(int s, int index) const {
   return width + static_cast<int>(std::lower_bound(begin, end, index) - begin);
 }
 
-std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
-  if (n == 0) return {};  // CHOLMOD wants at least one column
-  std::vector<int> order(Index(n));
-  std::iota(order.begin(), order.end(), 0);
-  ColumnLists upper = UpperTriangle(places, order);
-  cholmod_common common;
-  cholmod_start(&common);
-  common.print = 0;
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = Index(n);
-  matrix.nzmax = upper.rows.size();
-  matrix.p = upper.start.data();
-  matrix.i = upper.rows.data();
-  matrix.stype = 1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_PATTERN;
-  matrix.packed = 1;
-  const int done = cholmod_amd(&matrix, nullptr, 0, order.data(), &common);
-  cholmod_finish(&common);
-  if (!done) throw std::bad_alloc();
-  return order;
+double SymbolicFactor::Operations() const {
+  double sum = 0.0;
+  for (int s = 0; s < supernode_count(); ++s) {
+    for (int k = 0; k < columns(s); ++k) {
+      const double below = columns(s) - k + row_count(s);
+      sum += below * below;
+    }
+  }
+  return sum;
 }
 
 SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places) {

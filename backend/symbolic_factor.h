@@ -28,15 +28,13 @@ struct SymbolicFactor {
   int row_count(int s) const {
     return static_cast<int>(first_row[Index(s) + 1] - first_row[Index(s)]);
   }
+  /// Products of blocks that the numeric factorisation computes.
+  double Operations() const;
   /// Position of an elimination index in the front of supernode s; it must be in it.
   int PositionInFront(int s, int index) const;
 
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 };
-
-/// An order of elimination for an n x n matrix that keeps the factor sparse: approximate minimum
-/// degree (Amestoy, Davis and Duff 1996).
-std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places);
 
 /// Analyses the factor for an order of elimination, which it refines (without more fill) so that
 /// supernodes are contiguous.

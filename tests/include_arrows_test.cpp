@@ -50,7 +50,9 @@ const std::vector<Confinement>& Confinements() {
   static const std::vector<Confinement> confinements = {
       {"mrpt/", {"frontend/log/", "mapping/", "tests/"}, false},
       {"opencv2/", {"mapping/", "apps/", "tests/"}, false},
-      {"cholmod.h", {"backend/", "tests/"}, false},
+      {"amd.h", {"backend/"}, false},
+      {"metis.h", {"backend/"}, false},
+      {"cholmod.h", {"tests/"}, false},
       {"CLI/", {"apps/", "tests/"}, true},
       {"nlohmann/", {"apps/", "tests/"}, true},
       {"ceres/", {"tests/"}, true},

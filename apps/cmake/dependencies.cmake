@@ -1,7 +1,6 @@
 # The libraries that loopgrid is built on, found the same way by this build and by the installed
-# package's config file. Debian's OpenCV modules and SuiteSparse bring no CMake config of their
-# own (OpenCV's is in the package with all of its modules), so they get targets here:
-# loopgrid_deps::cholmod and loopgrid_deps::opencv.
+# package's config file. Some of Debian's packages bring no CMake config of their own (OpenCV's is
+# in the package with all of its modules), so they get targets here: loopgrid_deps::...
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
@@ -9,15 +8,22 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(mrpt-obs REQUIRED)
 
-if(NOT TARGET loopgrid_deps::cholmod)
-  find_path(LOOPGRID_CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
-  find_library(LOOPGRID_CHOLMOD_LIBRARY cholmod REQUIRED)
-  mark_as_advanced(LOOPGRID_CHOLMOD_INCLUDE_DIR LOOPGRID_CHOLMOD_LIBRARY)
-  add_library(loopgrid_deps::cholmod UNKNOWN IMPORTED)
-  set_target_properties(loopgrid_deps::cholmod PROPERTIES
-    IMPORTED_LOCATION "${LOOPGRID_CHOLMOD_LIBRARY}"
-    INTERFACE_INCLUDE_DIRECTORIES "${LOOPGRID_CHOLMOD_INCLUDE_DIR}")
-endif()
+# loopgrid_find_library(NAME HEADER PATH_SUFFIX...): loopgrid_deps::NAME for lib<name>.
+function(loopgrid_find_library name header)
+  if(TARGET loopgrid_deps::${name})
+    return()
+  endif()
+  find_path(LOOPGRID_${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
+  find_library(LOOPGRID_${name}_LIBRARY ${name} REQUIRED)
+  mark_as_advanced(LOOPGRID_${name}_INCLUDE_DIR LOOPGRID_${name}_LIBRARY)
+  add_library(loopgrid_deps::${name} UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(loopgrid_deps::${name} PROPERTIES
+    IMPORTED_LOCATION "${LOOPGRID_${name}_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${LOOPGRID_${name}_INCLUDE_DIR}")
+endfunction()
+
+loopgrid_find_library(amd amd.h suitesparse)
+loopgrid_find_library(metis metis.h)
 
 if(NOT TARGET loopgrid_deps::opencv)
   find_path(LOOPGRID_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

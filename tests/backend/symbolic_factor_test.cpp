@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "backend/ordering.h"
+
 namespace loopgrid {
 namespace {
 
