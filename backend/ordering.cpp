@@ -42,6 +42,8 @@ Neighbours ListNeighbours(int n, std::span<const BlockPlace> places) {
 
 std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
   std::vector<int> order(Index(n));
+  std::iota(order.begin(), order.end(), 0);
+  if (places.empty()) return order;  // AMD and METIS take no graph without edges
   const Neighbours lists = ListNeighbours(n, places);
   const int status =
       amd_order(n, lists.start.data(), lists.nodes.data(), order.data(), nullptr, nullptr);
@@ -51,10 +53,10 @@ std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
 
 std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places) {
   static_assert(sizeof(idx_t) == sizeof(int));
-  // METIS takes no graph without edges.
-  if (places.empty()) return MinimumDegreeOrder(n, places);
-  Neighbours lists = ListNeighbours(n, places);
   std::vector<int> order(Index(n));
+  std::iota(order.begin(), order.end(), 0);
+  if (places.empty()) return order;
+  Neighbours lists = ListNeighbours(n, places);
   std::vector<int> position(Index(n));
   static std::mutex mutex;  // of rand()
   const std::lock_guard lock(mutex);
