@@ -6,7 +6,7 @@
 
 #include "apps/closures_csv.h"
 #include "apps/stopwatch.h"
-#include "backend/g2o_file.h"
+#include "backend/graph_file.h"
 #include "frontend/log/corrected_log.h"
 #include "frontend/log/tum_file.h"
 #include "mapping/graph_drawing.h"
@@ -104,7 +104,7 @@ void WriteRecords(const std::string& log, const Slam& slam, const std::vector<SE
   outputs->Write("corrected.clf", [&](const std::string& path) {
     WriteCorrectedLog(log, path, CorrectScans(slam, poses));
   });
-  outputs->Write("graph.g2o", FormatG2o(slam.graph()));
+  outputs->Write("graph.g2o", FormatGraph(slam.graph()));
   outputs->Write("closures.csv", FormatClosuresCsv(slam.closures()));
 }
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "backend/g2o_file.h"
+#include "backend/graph_file.h"
 #include "backend/optimizer.h"
 
 namespace loopgrid {
@@ -46,8 +46,8 @@ class KnownOptimumTest : public ::testing::TestWithParam<KnownOptimum> {};
 TEST_P(KnownOptimumTest, IsReachedFromTheStartInTheFile) {
   const char* folder = std::getenv("LOOPGRID_DATA");
   if (folder == nullptr) GTEST_SKIP() << "LOOPGRID_DATA is not set";
-  G2oGraph read = ReadG2o(std::string(folder) + "/graphs/" + GetParam().file);
-  PoseGraph<SE2>& graph = read.graph;
+  PoseGraph<SE2> graph =
+      ReadGraphOf<SE2>(std::string(folder) + "/graphs/" + GetParam().file).graph;
   EXPECT_EQ(graph.poses.size(), GetParam().nodes);
   EXPECT_EQ(graph.constraints.size(), GetParam().constraints);
 

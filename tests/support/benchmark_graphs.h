@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/g2o_file.h"
+#include "backend/graph_file.h"
 #include "tests/support/manhattan_world.h"
 
 namespace loopgrid::test_support {
@@ -23,7 +23,7 @@ inline std::vector<NamedGraph> BenchmarkGraphs() {
   if (folder == nullptr) return graphs;
   for (const char* name : {"intel", "intel-943", "manhattan3500", "city10000"}) {
     const auto path = std::filesystem::path(folder) / "graphs" / (std::string(name) + ".g2o");
-    graphs.push_back({name, ReadG2o(path.string()).graph});
+    graphs.push_back({name, ReadGraphOf<SE2>(path.string()).graph});
   }
   return graphs;
 }
