@@ -34,6 +34,10 @@ constexpr double kTrusted = 0.75;
 constexpr double kDistrusted = 0.25;
 constexpr double kSmallestRadius = 1e-12;
 
+// Full steps on trial after one that does not lower F, and trials that may fail in a row.
+constexpr int kLookAhead = 3;
+constexpr int kTrials = 3;
+
 // The square of a graduated loss's width falls by this factor at a time (Yang et al. 2020).
 constexpr double kGraduation = 1.4;
 
@@ -210,6 +214,7 @@ void Optimizer<Pose>::SetStructure(const PoseGraph<Pose>& graph) {
 template <typename Pose>
 void Optimizer<Pose>::Iterate(PoseGraph<Pose>* graph, OptimizerResult* result) {
   factor_fits_ = false;
+  failed_trials_ = 0;
   radius_ = kInfinity;
   State best = StateOf(*graph);
   double best_error = result->final_error;
@@ -342,11 +347,43 @@ std::optional<Termination> Optimizer<Pose>::LevenbergMarquardtStep(PoseGraph<Pos
         damping = Weaker(damping);  // strong damping makes small steps: no sign of a minimum
         break;
       case Trial::kRejected:
+        if (damping == 0.0 && LookAhead(graph, result)) return std::nullopt;
         damping = Stronger(damping);
         was_rejected = was_raised = true;
     }
   }
   return was_definite ? Termination::kStalled : Termination::kIndefinite;
+}
+
+// In a valley that bends, a Gauss-Newton step leads up its side and the next ones down to its floor
+// again, further along than short steps get: worth a trial (the watchdog of Chamberlain et al.
+// 1982).
+template <typename Pose>
+bool Optimizer<Pose>::LookAhead(PoseGraph<Pose>* graph, OptimizerResult* result) {
+  if (failed_trials_ >= kTrials) return false;
+  const State start = StateOf(*graph);
+  OptimizerResult ahead = *result;
+  for (int step = 0; step < kLookAhead; ++step) {
+    const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
+    last_step_ = dx.norm();
+    Move(graph, dx);
+    ahead.final_error = TotalError(*graph, objective_);
+    if (ahead.final_error < result->final_error) {
+      *result = std::move(ahead);
+      failed_trials_ = 0;
+      return true;
+    }
+    if (!std::isfinite(ahead.final_error)) break;
+    ++ahead.iterations;
+    ++ahead.uphill_steps;
+    Record(*graph, &ahead);
+    Linearize(*graph);
+    if (!Factorize(0.0)) break;
+  }
+  ++failed_trials_;
+  Restore(start, graph);
+  Linearize(*graph);
+  return false;
 }
 
 template <typename Pose>

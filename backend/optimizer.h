@@ -18,7 +18,8 @@ namespace loopgrid {
 
 /// How a step is made of the linearised problem H dx = -b.
 enum class Method {
-  /// Gauss-Newton steps as long as they lower F, damped ones (Marquardt 1963) where they do not.
+  /// Gauss-Newton steps as long as they lower F, at once or within the next few steps; damped ones
+  /// (Marquardt 1963) where they do not.
   kLevenbergMarquardt,
   /// Full steps, whether they lower F or not: Algorithms 1 and 2 of the tutorial to the letter.
   kGaussNewton,
@@ -72,7 +73,7 @@ struct OptimizerResult {
   double initial_error = 0.0;  ///< F at the start (with the robust loss)
   double final_error = 0.0;    ///< F at the end; never more than at the start
   int iterations = 0;          ///< steps taken
-  int uphill_steps = 0;        ///< of these, by Gauss-Newton, that made F worse
+  int uphill_steps = 0;        ///< of these, those that made F worse, on the way to better ones
   double damping = 0.0;        ///< Levenberg-Marquardt's lambda at the end; 0: Gauss-Newton
   Termination termination = Termination::kNothingToMove;
   std::vector<IterationRecord> trace;  ///< the start and every step
@@ -125,6 +126,8 @@ class Optimizer {
   std::optional<Termination> LevenbergMarquardtStep(PoseGraph<Pose>* graph,
                                                     OptimizerResult* result);
   std::optional<Termination> DogLegStep(PoseGraph<Pose>* graph, OptimizerResult* result);
+  /// Full steps, the first of which raises F, if a few of them lower it in the end.
+  bool LookAhead(PoseGraph<Pose>* graph, OptimizerResult* result);
   /// A step by the present factor, unless it promises more than a limit.
   Trial TryFactor(PoseGraph<Pose>* graph, double most_promised, OptimizerResult* result);
   /// Moves the graph by `dx` if that lowers F; `promised` is what the quadratic model says it does.
@@ -150,6 +153,7 @@ class Optimizer {
   double last_promised_ = 0.0;      // decrease of F, by the last step
   double last_gain_ = 0.0;          // the share of that which came true
   double last_step_ = 0.0;          // its length
+  int failed_trials_ = 0;           // of looking ahead, in a row
   double radius_ = 0.0;             // of the dog leg's trust region
   State before_;                    // the step being tried
   std::chrono::steady_clock::time_point start_;  // of the call
