@@ -18,9 +18,12 @@ inline Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& angles) {
 inline Eigen::Vector3d RollPitchYaw(const Eigen::Quaterniond& q) {
   const Eigen::Matrix3d R = q.toRotationMatrix();
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
-  const double pitch = std::atan2(-R(2, 0), cos_pitch);
-  if (cos_pitch < 1e-12) return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+  // Near the ends of pitch roll is vague, hence yaw is what is left of the rotation without it.
+  const double roll = cos_pitch < 1e-14 ? 0.0 : std::atan2(R(2, 1), R(2, 2));
+  const double sr = std::sin(roll);
+  const double cr = std::cos(roll);
+  return {roll, std::atan2(-R(2, 0), cos_pitch),
+          std::atan2(sr * R(0, 2) - cr * R(0, 1), cr * R(1, 1) - sr * R(1, 2))};
 }
 
 /// The matrix that takes the rates of (roll, pitch, yaw) to the angular velocity in the body's own

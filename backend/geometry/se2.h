@@ -72,15 +72,11 @@ class SE2 {
 };
 
 namespace internal {
-/// sin(t)/t and (1-cos(t))/t, with their series near zero.
+/// sin(t)/t and (1-cos(t))/t; the latter by way of half the angle, where nothing cancels.
 inline void SinAndVersineOver(double t, double* sin_over, double* versine_over) {
-  if (std::abs(t) < 1e-4) {
-    *sin_over = 1.0 - t * t / 6.0;
-    *versine_over = t / 2.0 - t * t * t / 24.0;
-  } else {
-    *sin_over = std::sin(t) / t;
-    *versine_over = (1.0 - std::cos(t)) / t;
-  }
+  const double half_sin = std::sin(0.5 * t);
+  *sin_over = std::abs(t) < 1e-8 ? 1.0 : std::sin(t) / t;
+  *versine_over = std::abs(t) < 1e-8 ? 0.5 * t : 2.0 * half_sin * half_sin / t;
 }
 }  // namespace internal
 
