@@ -1,13 +1,60 @@
 #include "backend/toro_format.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <array>
+#include <cmath>
 
 #include "backend/geometry/euler.h"
 #include "backend/graph_text.h"
 
 namespace loopgrid {
 namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// The derivative of (roll, pitch, yaw) by the vector part of a quaternion with w >= 0: as g2o
+/// takes it up to about 64 degrees; that of the identity beyond, where g2o's becomes lopsided and
+/// in the end singular.
+///
+/// g2o changes the vector part v and leaves w, takes the rotation matrix, and from that a
+/// quaternion again: (s, w v / s) with s^2 = 1 - v^2. With k = w^2 / s^2, which is 1 at the
+/// measurement, this makes roll = atan2(2 (w x + k y z), 1 - 2 k (x^2 + y^2)), and so on.
+Eigen::Matrix3d AnglesByVectorPart(const Eigen::Quaterniond& q) {
+  constexpr double kSmallestW = 0.85;
+  const double w = q.w();
+  if (w < kSmallestW) return 2.0 * Eigen::Matrix3d::Identity();
+  using Row = Eigen::RowVector3d;
+  const double x = q.x();
+  const double y = q.y();
+  const double z = q.z();
+  const Row dk = (2.0 / (w * w)) * q.vec().transpose();
+  const double cos_roll = 1.0 - 2.0 * (x * x + y * y);  // times cos(pitch), as the next three
+  const double sin_roll = 2.0 * (w * x + y * z);
+  const double cos_yaw = 1.0 - 2.0 * (y * y + z * z);
+  const double sin_yaw = 2.0 * (w * z + x * y);
+  const double cos_pitch = std::hypot(cos_roll, sin_roll);
+  const Row d_cos_roll = -2.0 * (Row(2.0 * x, 2.0 * y, 0.0) + (x * x + y * y) * dk);
+  const Row d_sin_roll = 2.0 * (Row(w, z, y) + y * z * dk);
+  const Row d_sin_pitch = 2.0 * (Row(-z, w, -x) - x * z * dk);
+  const Row d_cos_yaw = -2.0 * (Row(0.0, 2.0 * y, 2.0 * z) + (y * y + z * z) * dk);
+  const Row d_sin_yaw = 2.0 * (Row(y, x, w) + x * y * dk);
+  Eigen::Matrix3d J;
+  J << (cos_roll * d_sin_roll - sin_roll * d_cos_roll) / (cos_pitch * cos_pitch),
+      d_sin_pitch / cos_pitch,
+      (cos_yaw * d_sin_yaw - sin_yaw * d_cos_yaw) / (cos_pitch * cos_pitch);
+  return J;
+}
+
+/// The information matrix in other coordinates of the rotation; J: the old ones by the new ones.
+Matrix6d Transform(const Matrix6d& information, const Eigen::Matrix3d& J) {
+  Matrix6d transformed = information;
+  transformed.topRightCorner<3, 3>() = information.topRightCorner<3, 3>() * J;
+  transformed.bottomRightCorner<3, 3>() = J.transpose() * information.bottomRightCorner<3, 3>() * J;
+  transformed.triangularView<Eigen::StrictlyLower>() = transformed.transpose();
+  return transformed;
+}
 
 template <typename Pose>
 Pose ReadPose(GraphLine* line);
@@ -24,20 +71,17 @@ SE3 ReadPose<SE3>(GraphLine* line) {
 }
 
 template <typename Pose>
-typename Constraint<Pose>::Information ReadInformation(GraphLine* line);
+typename Constraint<Pose>::Information ReadInformation(GraphLine* line, const Pose& T_from_to);
 
 template <>
-Eigen::Matrix3d ReadInformation<SE2>(GraphLine* line) {
+Eigen::Matrix3d ReadInformation<SE2>(GraphLine* line, const SE2& /*T_from_to*/) {
   const Eigen::Matrix<double, 6, 1> I = line->Numbers<6>();  // xx xy yy tt xt yt
   return (Eigen::Matrix3d() << I[0], I[1], I[4], I[1], I[2], I[5], I[4], I[5], I[3]).finished();
 }
 
 template <>
-Eigen::Matrix<double, 6, 6> ReadInformation<SE3>(GraphLine* line) {
-  Eigen::Matrix<double, 6, 6> information = line->UpperTriangle<6>();
-  information.rightCols<3>() *= 2.0;
-  information.bottomRows<3>() *= 2.0;
-  return information;
+Matrix6d ReadInformation<SE3>(GraphLine* line, const SE3& T_from_to) {
+  return Transform(line->UpperTriangle<6>(), AnglesByVectorPart(T_from_to.quaternion()));
 }
 
 template <typename Pose>
@@ -54,7 +98,7 @@ void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
   const std::int64_t to = line->Id();
   Constraint<Pose> constraint;
   constraint.T_from_to = ReadPose<Pose>(line);
-  constraint.information = ReadInformation<Pose>(line);
+  constraint.information = ReadInformation<Pose>(line, constraint.T_from_to);
   line->End();
   line->RequireInformation(constraint.information);
   builder->AddConstraint({from, to, line->number()}, constraint);
@@ -82,14 +126,14 @@ void Append(const SE3& pose, std::string* text) {
   AppendNumbers(RollPitchYaw(pose.quaternion()), text);
 }
 
-void AppendInformation(const Eigen::Matrix3d& I, std::string* text) {
+void AppendInformation(const Constraint<SE2>& constraint, std::string* text) {
+  const Eigen::Matrix3d& I = constraint.information;
   AppendNumbers(std::array{I(0, 0), I(0, 1), I(1, 1), I(2, 2), I(0, 2), I(1, 2)}, text);
 }
 
-void AppendInformation(Eigen::Matrix<double, 6, 6> information, std::string* text) {
-  information.rightCols<3>() *= 0.5;
-  information.bottomRows<3>() *= 0.5;
-  AppendUpperTriangle(information, text);
+void AppendInformation(const Constraint<SE3>& constraint, std::string* text) {
+  const Eigen::Matrix3d J = AnglesByVectorPart(constraint.T_from_to.quaternion());
+  AppendUpperTriangle(Transform(constraint.information, J.inverse()), text);
 }
 
 }  // namespace
@@ -119,7 +163,7 @@ std::string FormatToro(const PoseGraph<Pose>& graph, const GraphIds& ids) {
     AppendTag(kPlanar ? "EDGE2" : "EDGE3", {names.node(constraint.from), names.node(constraint.to)},
               &text);
     Append(constraint.T_from_to, &text);
-    AppendInformation(constraint.information, &text);
+    AppendInformation(constraint, &text);
     text += '\n';
   }
   return text;

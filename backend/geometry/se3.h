@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace loopgrid {
 
@@ -74,9 +75,13 @@ class SE3 {
   Tangent Log() const;
 
  private:
+  /// Leaves a quaternion whose length is 1 up to rounding as it is, so that writing a pose to a
+  /// file and reading it again changes no bit.
   void Normalize() {
-    const double norm = rotation_.norm();
-    rotation_.coeffs() *= (rotation_.w() < 0.0 ? -1.0 : 1.0) / norm;
+    constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+    const double squared = rotation_.squaredNorm();
+    if (!(std::abs(squared - 1.0) <= kRounding)) rotation_.coeffs() /= std::sqrt(squared);
+    if (rotation_.w() < 0.0) rotation_.coeffs() *= -1.0;
   }
 
   Eigen::Vector3d translation_ = Eigen::Vector3d::Zero();
