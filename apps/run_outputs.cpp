@@ -12,6 +12,7 @@
 #include "mapping/graph_drawing.h"
 #include "mapping/map_files.h"
 #include "mapping/occupancy_grid.h"
+#include "mapping/uncertainty_drawing.h"
 
 namespace loopgrid {
 namespace {
@@ -42,6 +43,13 @@ std::vector<SE2> NodesAmong(const Slam& slam, const std::vector<SE2>& scan_poses
   std::vector<SE2> nodes;
   for (int scan : slam.node_scans()) nodes.push_back(scan_poses[static_cast<std::size_t>(scan)]);
   return nodes;
+}
+
+std::vector<Eigen::Vector3d> PositionsOf(const std::vector<SE2>& nodes) {
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(nodes.size());
+  for (const SE2& node : nodes) positions.emplace_back(node.x(), node.y(), 0.0);
+  return positions;
 }
 
 std::vector<GraphEdge> EdgesOf(const PoseGraph<SE2>& graph) {
@@ -75,10 +83,13 @@ void WriteDrawings(const Slam& slam, const std::vector<SE2>& poses, OutputDirect
   const std::vector<SE2>& nodes_after = slam.graph().poses;
   const OccupancyGrid map_before = RenderBackdrop(odometry, ScansOf(slam));
   const OccupancyGrid map_after = RenderBackdrop(poses, ScansOf(slam));
-  const GraphState before = {.nodes = nodes_before, .backdrop = &map_before};
-  const GraphState after = {.nodes = nodes_after, .backdrop = &map_after};
+  const GraphState before = {
+      .title = "before: odometry", .nodes = PositionsOf(nodes_before), .backdrop = &map_before};
+  const GraphState after = {
+      .title = "after optimisation", .nodes = PositionsOf(nodes_after), .backdrop = &map_after};
   outputs->Write("graph.png", DrawGraphBeforeAfter(before, after, EdgesOf(slam.graph())));
-  outputs->Write("uncertainty.png", DrawUncertainty(after, slam.NodeCovariances()));
+  outputs->Write("uncertainty.png",
+                 DrawUncertainty(nodes_after, slam.NodeCovariances(), &map_after));
 }
 
 Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses) {

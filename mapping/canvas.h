@@ -22,6 +22,9 @@ struct Color {
 inline constexpr Color kBlack{0, 0, 0};
 inline constexpr Color kWhite{255, 255, 255};
 
+/// The colour on the way from `a` (share 0) to `b` (share 1).
+Color Mix(Color a, Color b, double share);
+
 /// A rectangle of pixels.
 struct PixelArea {
   int left = 0;
@@ -49,6 +52,11 @@ class Canvas {
   /// with a coordinate that is not finite is not drawn.
   void DrawLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                 Color color, int thickness);
+
+  /// The same for a line one pixel wide that lets what is below it shine through: `opacity` is the
+  /// share of its colour, 0..1. Lines of opacity 1/2 look half a pixel wide.
+  void DrawFineLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                    Color color, double opacity);
 
   void FillRectangle(const PixelArea& area, Color color);
 

@@ -2,115 +2,204 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "backend/base/error.h"
 #include "mapping/canvas.h"
 #include "mapping/map_view.h"
+#include "mapping/picture_layout.h"
 
 namespace loopgrid {
 namespace {
 
-// Pixels.
-constexpr int kMaxSide = 2400;
-constexpr int kMargin = 24;
-constexpr int kTextHeight = 18;
-constexpr int kLineHeight = 3 * kTextHeight;  // of the rows for titles, scale bars and the legend
-constexpr int kMinPanelWidth = 560;           // for its title
-constexpr int kMaxPanelHeight = kMaxSide - 3 * kLineHeight - 2 * kMargin;
-
-constexpr Color kFreeColor{228, 228, 228};
-constexpr Color kWallColor{130, 130, 130};
 constexpr Color kSequentialColor{30, 100, 190};
 constexpr Color kClosureColor{225, 75, 35};
-constexpr Color kRobotColor{20, 140, 60};
+constexpr Color kLandmarkColor{20, 140, 60};
 
 constexpr int kBackdropCells = 1200;
-constexpr double kSigmas = 3.0;
+constexpr double kLandmarkRadius = 4.0;  // pixels
 
-Eigen::AlignedBox2d ExtentOf(const GraphState& state) {
+// Where the eye of an oblique view is: degrees from x to y, and above the horizon.
+constexpr double kAzimuth = -55.0;
+constexpr double kElevation = 28.0;
+constexpr double kPalest = 0.8;  // share of white in the colour of what is farthest away
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// A parallel projection: the axes of the picture and the direction away from the eye.
+struct Projection {
+  Eigen::Vector3d right = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d away = -Eigen::Vector3d::UnitZ();
+
+  Eigen::Vector2d operator()(const Eigen::Vector3d& p) const { return {right.dot(p), up.dot(p)}; }
+};
+
+Projection ProjectionOf(Viewpoint viewpoint) {
+  if (viewpoint == Viewpoint::kAbove) return {};
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const double c = std::cos(kDegree * kAzimuth);
+  const double s = std::sin(kDegree * kAzimuth);
+  const double horizontal = std::cos(kDegree * kElevation);
+  const double vertical = std::sin(kDegree * kElevation);
+  return {.right = {-s, c, 0.0},
+          .up = {-vertical * c, -vertical * s, horizontal},
+          .away = {-horizontal * c, -horizontal * s, -vertical}};
+}
+
+/// A state of a graph as it appears in the plane of the picture.
+struct Panel {
+  std::vector<Eigen::Vector2d> nodes;
+  std::vector<double> depths;  // of the nodes, 0 (nearest) to 1
+  std::vector<Eigen::Vector2d> landmarks;
   Eigen::AlignedBox2d extent;
-  if (state.backdrop != nullptr) extent = SeenExtent(*state.backdrop);
-  for (const SE2& node : state.nodes) extent.extend(node.translation());
-  return extent;
-}
+};
 
-Eigen::Matrix2d PositionCovariance(const SE2& node, const Eigen::Matrix3d& covariance) {
-  return node.rotation() * covariance.topLeftCorner<2, 2>() * node.rotation().transpose();
-}
-
-// Makes room for ellipses, but not for those that would dwarf the map.
-Eigen::AlignedBox2d WithEllipses(Eigen::AlignedBox2d extent, const GraphState& state,
-                                 std::span<const Eigen::Matrix3d> covariances) {
-  const double largest = extent.isEmpty() ? 0.0 : 0.25 * extent.sizes().norm();
-  for (std::size_t i = 0; i < covariances.size(); ++i) {
-    const Eigen::Vector2d reach =
-        kSigmas * PositionCovariance(state.nodes[i], covariances[i]).diagonal().cwiseSqrt();
-    if (!(reach.maxCoeff() <= largest)) continue;
-    extent.extend(state.nodes[i].translation() + reach);
-    extent.extend(state.nodes[i].translation() - reach);
+Panel Project(const GraphState& state, Viewpoint viewpoint) {
+  const Projection project = ProjectionOf(viewpoint);
+  Panel panel;
+  if (state.backdrop != nullptr) panel.extent = SeenExtent(*state.backdrop);
+  for (const Eigen::Vector3d& node : state.nodes) {
+    panel.nodes.push_back(project(node));
+    panel.extent.extend(panel.nodes.back());
+    panel.depths.push_back(project.away.dot(node));
   }
-  return extent;
+  for (const Eigen::Vector3d& landmark : state.landmarks) {
+    panel.landmarks.push_back(project(landmark));
+    panel.extent.extend(panel.landmarks.back());
+  }
+  if (panel.depths.empty()) return panel;
+  const auto [nearest, farthest] = std::minmax_element(panel.depths.begin(), panel.depths.end());
+  const double first = *nearest;
+  const double range = *farthest - first;
+  for (double& depth : panel.depths) depth = range > 0.0 ? (depth - first) / range : 0.0;
+  return panel;
 }
 
-// How large a picture of `extent` is when scaled to fit.
-Eigen::Vector2i FittedSize(const Eigen::AlignedBox2d& extent, int max_width, int max_height) {
-  const Eigen::Vector2d size =
-      extent.isEmpty() ? Eigen::Vector2d(1.0, 1.0) : extent.sizes().cwiseMax(1e-6);
-  const double scale = std::min(max_width / size.x(), max_height / size.y());
-  return (scale * size).array().ceil().cast<int>().matrix();
+double DepthOf(const GraphEdge& edge, const Panel& panel) {
+  return 0.5 * (panel.depths[Index(edge.from)] + panel.depths[Index(edge.to)]);
 }
 
-void DrawEdges(std::span<const SE2> nodes, std::span<const GraphEdge> edges, EdgeKind kind,
-               Color color, int thickness, MapView* view) {
+/// The order to draw edges in: far ones first; of equally far ones, the robot's way last.
+std::vector<int> BackToFront(std::span<const GraphEdge> edges, const Panel& panel) {
+  std::vector<int> order(edges.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const double depth_a = DepthOf(edges[Index(a)], panel);
+    const double depth_b = DepthOf(edges[Index(b)], panel);
+    if (depth_a != depth_b) return depth_a > depth_b;
+    return edges[Index(a)].kind == EdgeKind::kClosure &&
+           edges[Index(b)].kind != edges[Index(a)].kind;
+  });
+  return order;
+}
+
+/// How heavy lines may be without running into each other.
+struct Pen {
+  bool is_broad;   // two pixels
+  double opacity;  // of fine ones
+};
+
+/// `ink` is the share of the picture that lines one pixel wide would cover if none met another.
+Pen PenFor(double ink) {
+  constexpr double kBroadest = 0.03;
+  constexpr double kDensest = 0.2;
+  constexpr double kFaintest = 0.25;
+  return {ink < kBroadest, std::clamp(kDensest / ink, kFaintest, 1.0)};
+}
+
+double InkOf(std::span<const GraphEdge> edges, EdgeKind kind, const Panel& panel,
+             const PixelArea& area, double pixels_per_metre) {
+  double pixels = 0.0;
   for (const GraphEdge& edge : edges) {
     if (edge.kind != kind) continue;
-    view->DrawLine(nodes[static_cast<std::size_t>(edge.from)].translation(),
-                   nodes[static_cast<std::size_t>(edge.to)].translation(), color, thickness);
+    const Eigen::Vector2d way = panel.nodes[Index(edge.to)] - panel.nodes[Index(edge.from)];
+    pixels += std::max(1.0, pixels_per_metre * way.norm());
+  }
+  return pixels / (1.0 * area.width * area.height);
+}
+
+void DrawEdges(std::span<const GraphEdge> edges, const Panel& panel, const PixelArea& area,
+               MapView* view) {
+  const double scale = view->pixels_per_metre();
+  const Pen sequential = PenFor(InkOf(edges, EdgeKind::kSequential, panel, area, scale));
+  const Pen closure = PenFor(InkOf(edges, EdgeKind::kClosure, panel, area, scale));
+  for (int k : BackToFront(edges, panel)) {
+    const GraphEdge& edge = edges[Index(k)];
+    const bool is_closure = edge.kind == EdgeKind::kClosure;
+    const Color color =
+        Mix(is_closure ? kClosureColor : kSequentialColor, kWhite, kPalest * DepthOf(edge, panel));
+    const Eigen::Vector2d& from = panel.nodes[Index(edge.from)];
+    const Eigen::Vector2d& to = panel.nodes[Index(edge.to)];
+    if (!is_closure && sequential.is_broad) {
+      view->DrawLine(from, to, color, 2);
+    } else {
+      view->DrawFineLine(from, to, color, is_closure ? closure.opacity : sequential.opacity);
+    }
   }
 }
 
-void DrawBackdrop(const GraphState& state, MapView* view) {
-  if (state.backdrop != nullptr) view->DrawGrid(*state.backdrop, kFreeColor, kWallColor);
+/// The directions of x, y and z in an oblique view, in the lower right corner of its row.
+void DrawAxes(int right, int base, Canvas* canvas) {
+  constexpr double kLength = 1.6 * kTextHeight;
+  constexpr int kLetter = kTextHeight - 6;
+  const Projection project = ProjectionOf(Viewpoint::kOblique);
+  const PixelArea area{0, 0, canvas->width(), canvas->height()};
+  const Eigen::Vector2d origin(right - 2.5 * kTextHeight, base);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector2d in_plane = project(Eigen::Vector3d::Unit(axis));
+    const Eigen::Vector2d direction(in_plane.x(), -in_plane.y());
+    const Eigen::Vector2d end = origin + kLength * direction;
+    canvas->DrawLine(area, origin, end, kBlack, 1);
+    const Eigen::Vector2d letter = end + 0.5 * kLetter * direction.normalized();
+    canvas->DrawText(static_cast<int>(letter.x()) - kLetter / 3,
+                     static_cast<int>(letter.y()) + kLetter / 3, kLetter,
+                     std::string(1, static_cast<char>('x' + axis)), kBlack);
+  }
 }
 
-void DrawGraphPanel(const std::string& title, const GraphState& state,
-                    std::span<const GraphEdge> edges, const PixelArea& area, Canvas* canvas) {
-  MapView view(canvas, area, ExtentOf(state));
-  canvas->DrawText(area.left, area.top - kTextHeight, kTextHeight, title, kBlack);
-  DrawBackdrop(state, &view);
-  DrawEdges(state.nodes, edges, EdgeKind::kClosure, kClosureColor, 1, &view);
-  DrawEdges(state.nodes, edges, EdgeKind::kSequential, kSequentialColor, 2, &view);
-  view.DrawScaleBar(area.left, area.top + area.height + 2 * kTextHeight, kTextHeight);
+void DrawPanel(const GraphState& state, const Panel& panel, std::span<const GraphEdge> edges,
+               Viewpoint viewpoint, const PixelArea& area, Canvas* canvas) {
+  MapView view(canvas, area, panel.extent);
+  canvas->DrawText(area.left, area.top - kTextHeight, kTextHeight, state.title, kBlack);
+  if (state.backdrop != nullptr) view.DrawGrid(*state.backdrop, kFreeColor, kWallColor);
+  DrawEdges(edges, panel, area, &view);
+  for (const Eigen::Vector2d& landmark : panel.landmarks) {
+    view.DrawDot(landmark, kLandmarkRadius, kLandmarkColor);
+  }
+  const int base = area.top + area.height + 2 * kTextHeight;
+  view.DrawScaleBar(area.left, base, kTextHeight);
+  if (viewpoint == Viewpoint::kOblique) DrawAxes(area.left + area.width, base, canvas);
 }
 
-// A sample of a line and what it stands for; returns where the next entry goes.
-int DrawLegendEntry(int left, int base, Color color, int thickness, const std::string& text,
-                    Canvas* canvas) {
-  constexpr int kSample = 60;
-  canvas->FillRectangle({left, base - kTextHeight / 2 - thickness / 2, kSample, thickness}, color);
-  canvas->DrawText(left + kSample + kTextHeight / 2, base, kTextHeight, text, kBlack);
-  return left + kSample + 3 * kTextHeight + Canvas::TextWidth(kTextHeight, text);
+void DrawLegend(std::span<const GraphEdge> edges, std::size_t landmarks, Canvas* canvas) {
+  const auto closures = std::count_if(edges.begin(), edges.end(), [](const GraphEdge& edge) {
+    return edge.kind == EdgeKind::kClosure;
+  });
+  const auto sequential = static_cast<std::ptrdiff_t>(edges.size()) - closures;
+  const int base = canvas->height() - kPictureMargin;
+  int next = DrawLegendEntry(kPictureMargin, base, kSequentialColor, 4,
+                             fmt::format("{} sequential constraints", sequential), canvas);
+  next =
+      DrawLegendEntry(next, base, kClosureColor, 4, fmt::format("{} closures", closures), canvas);
+  if (landmarks == 0) return;
+  DrawLegendEntry(next, base, kLandmarkColor, 10, fmt::format("{} landmarks", landmarks), canvas);
 }
 
-std::ptrdiff_t CountEdges(std::span<const GraphEdge> edges, EdgeKind kind) {
-  return std::count_if(edges.begin(), edges.end(),
-                       [kind](const GraphEdge& edge) { return edge.kind == kind; });
-}
-
-void RequireFinite(std::span<const SE2> nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].coordinates().allFinite()) continue;
-    throw Error(ErrorCode::kUsage, fmt::format("the pose of node {} is not finite", i));
+void RequireFinite(std::span<const Eigen::Vector3d> points, const char* what) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].allFinite()) continue;
+    throw Error(ErrorCode::kUsage, fmt::format("the position of {} {} is not finite", what, i));
   }
 }
 
 void RequireNodesOf(std::span<const GraphEdge> edges, std::size_t node_count) {
   for (const GraphEdge& edge : edges) {
-    const auto exists = [node_count](int node) {
-      return node >= 0 && static_cast<std::size_t>(node) < node_count;
-    };
+    const auto exists = [node_count](int node) { return node >= 0 && Index(node) < node_count; };
     if (exists(edge.from) && exists(edge.to)) continue;
     throw Error(ErrorCode::kUsage, fmt::format("edge {} - {}: the graph has {} nodes", edge.from,
                                                edge.to, node_count));
@@ -136,57 +225,25 @@ OccupancyGrid RenderBackdrop(std::span<const SE2> poses,
 }
 
 std::string DrawGraphBeforeAfter(const GraphState& before, const GraphState& after,
-                                 std::span<const GraphEdge> edges) {
-  RequireFinite(before.nodes);
-  RequireFinite(after.nodes);
+                                 std::span<const GraphEdge> edges, Viewpoint viewpoint) {
+  for (const GraphState* state : {&before, &after}) {
+    RequireFinite(state->nodes, "node");
+    RequireFinite(state->landmarks, "landmark");
+  }
   RequireNodesOf(edges, std::min(before.nodes.size(), after.nodes.size()));
-  constexpr int kMaxPanelWidth = (kMaxSide - 3 * kMargin) / 2;
-  const Eigen::Vector2i panel =
-      FittedSize(ExtentOf(before), kMaxPanelWidth, kMaxPanelHeight)
-          .cwiseMax(FittedSize(ExtentOf(after), kMaxPanelWidth, kMaxPanelHeight))
+  constexpr int kMaxPanelWidth = (kMaxPictureSide - 3 * kPictureMargin) / 2;
+  const Panel left = Project(before, viewpoint);
+  const Panel right = Project(after, viewpoint);
+  const Eigen::Vector2i size =
+      FittedSize(left.extent, kMaxPanelWidth, kMaxPanelHeight)
+          .cwiseMax(FittedSize(right.extent, kMaxPanelWidth, kMaxPanelHeight))
           .cwiseMax(Eigen::Vector2i(kMinPanelWidth, 1));
-  const int top = kMargin + kLineHeight;
-  Canvas canvas(2 * panel.x() + 3 * kMargin, panel.y() + 3 * kLineHeight + 2 * kMargin);
-  DrawGraphPanel("before: odometry", before, edges, {kMargin, top, panel.x(), panel.y()}, &canvas);
-  DrawGraphPanel("after optimisation", after, edges,
-                 {2 * kMargin + panel.x(), top, panel.x(), panel.y()}, &canvas);
-
-  const int base = canvas.height() - kMargin;
-  const int next = DrawLegendEntry(
-      kMargin, base, kSequentialColor, 4,
-      fmt::format("{} sequential constraints", CountEdges(edges, EdgeKind::kSequential)), &canvas);
-  DrawLegendEntry(next, base, kClosureColor, 4,
-                  fmt::format("{} closures", CountEdges(edges, EdgeKind::kClosure)), &canvas);
-  return canvas.EncodePng();
-}
-
-std::string DrawUncertainty(const GraphState& state, std::span<const Eigen::Matrix3d> covariances) {
-  if (covariances.size() != state.nodes.size()) {
-    throw Error(ErrorCode::kUsage,
-                fmt::format("{} covariances for {} nodes", covariances.size(), state.nodes.size()));
-  }
-  RequireFinite(state.nodes);
-  const Eigen::AlignedBox2d extent = WithEllipses(ExtentOf(state), state, covariances);
-  const Eigen::Vector2i panel =
-      FittedSize(extent, kMaxSide - 2 * kMargin, kMaxPanelHeight).cwiseMax(kMinPanelWidth);
-  Canvas canvas(panel.x() + 2 * kMargin, panel.y() + 3 * kLineHeight + 2 * kMargin);
-  const PixelArea area{kMargin, kMargin + kLineHeight, panel.x(), panel.y()};
-  canvas.DrawText(area.left, area.top - kTextHeight, kTextHeight,
-                  "uncertainty relative to the robot's last pose", kBlack);
-  MapView view(&canvas, area, extent);
-  DrawBackdrop(state, &view);
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    view.DrawEllipse(state.nodes[i].translation(),
-                     PositionCovariance(state.nodes[i], covariances[i]), kSigmas, kSequentialColor,
-                     1);
-  }
-  if (!state.nodes.empty()) view.DrawDot(state.nodes.back().translation(), 7.0, kRobotColor);
-  view.DrawScaleBar(area.left, area.top + area.height + 2 * kTextHeight, kTextHeight);
-
-  const int base = canvas.height() - kMargin;
-  const int next =
-      DrawLegendEntry(kMargin, base, kSequentialColor, 2, "3 sigma of a node", &canvas);
-  DrawLegendEntry(next, base, kRobotColor, 12, "last pose", &canvas);
+  const int top = kPictureMargin + kTextRow;
+  Canvas canvas(2 * size.x() + 3 * kPictureMargin, size.y() + 3 * kTextRow + 2 * kPictureMargin);
+  DrawPanel(before, left, edges, viewpoint, {kPictureMargin, top, size.x(), size.y()}, &canvas);
+  DrawPanel(after, right, edges, viewpoint,
+            {2 * kPictureMargin + size.x(), top, size.x(), size.y()}, &canvas);
+  DrawLegend(edges, after.landmarks.size(), &canvas);
   return canvas.EncodePng();
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "backend/geometry/se2.h"
 #include "mapping/occupancy_grid.h"
@@ -30,22 +31,25 @@ OccupancyGrid RenderBackdrop(std::span<const SE2> poses,
                              const std::function<MapScan(std::size_t)>& scan_at,
                              OccupancyGridOptions options = {});
 
-/// One state of a graph: the poses T_map_node of its nodes and the map that goes with them.
+/// One state of a graph, map frame, metres; in 2D z is 0.
 struct GraphState {
-  std::span<const SE2> nodes;
-  const OccupancyGrid* backdrop = nullptr;
+  std::string title = {};
+  std::vector<Eigen::Vector3d> nodes = {};
+  std::vector<Eigen::Vector3d> landmarks = {};
+  const OccupancyGrid* backdrop = nullptr;  ///< the map that goes with it; only seen from above
+};
+
+enum class Viewpoint {
+  kAbove,    ///< x to the right, y upwards
+  kOblique,  ///< z upwards, x and y aslant; what is farther away is paler
 };
 
 /// graph.png: the constraints before and after optimisation side by side, each over its map, in the
-/// manner of the tutorial's Fig. 9. At most 2,400 pixels a side. Throws Error (kUsage) if a pose is
-/// not finite or an edge names a node that is not there.
+/// manner of the tutorial's Fig. 9, and landmarks as dots. Lines get finer where there are many. At
+/// most 2,400 pixels a side. Throws Error (kUsage) if a position is not finite or an edge names a
+/// node that is not there.
 std::string DrawGraphBeforeAfter(const GraphState& before, const GraphState& after,
-                                 std::span<const GraphEdge> edges);
-
-/// uncertainty.png: the 3 sigma ellipses of the nodes' positions relative to the robot's last pose,
-/// which is the last node (the tutorial's Fig. 10). Covariances are in each node's own frame, order
-/// (x, y, theta); those that are none (not finite, indefinite) are left out. Throws Error (kUsage)
-/// if a pose is not finite or there is not one covariance a node.
-std::string DrawUncertainty(const GraphState& state, std::span<const Eigen::Matrix3d> covariances);
+                                 std::span<const GraphEdge> edges,
+                                 Viewpoint viewpoint = Viewpoint::kAbove);
 
 }  // namespace loopgrid

@@ -8,17 +8,10 @@
 #include <numbers>
 #include <vector>
 
+#include "mapping/axis.h"
+
 namespace loopgrid {
 namespace {
-
-// The largest of 1, 2, 5, 10, 20, ... that is not above `length`.
-double RoundLength(double length) {
-  const double power = std::pow(10.0, std::floor(std::log10(length)));
-  for (double digit : {5.0, 2.0}) {
-    if (digit * power <= length) return digit * power;
-  }
-  return power;
-}
 
 struct CellRange {
   std::int64_t begin;
@@ -94,6 +87,11 @@ void MapView::DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, C
   canvas_->DrawLine(area_, ToPixel(from), ToPixel(to), color, thickness);
 }
 
+void MapView::DrawFineLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color,
+                           double opacity) {
+  canvas_->DrawFineLine(area_, ToPixel(from), ToPixel(to), color, opacity);
+}
+
 void MapView::DrawDot(const Eigen::Vector2d& centre, double radius_pixels, Color color) {
   // A short thick line with round ends is a disc that is cut at the area's border like any line.
   canvas_->DrawLine(area_, ToPixel(centre), ToPixel(centre), color,
@@ -121,7 +119,7 @@ bool MapView::DrawEllipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& co
 }
 
 void MapView::DrawScaleBar(int left, int base, int text_height) {
-  const double metres = RoundLength(0.25 * area_.width / scale_);
+  const double metres = RoundDown(0.25 * area_.width / scale_);
   const int length = static_cast<int>(std::lround(metres * scale_));
   const int thickness = std::max(2, text_height / 4);
   canvas_->FillRectangle({left, base - thickness, length, thickness}, kBlack);

@@ -29,6 +29,9 @@ class MapView {
 
   void DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color, int thickness);
 
+  void DrawFineLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color color,
+                    double opacity);
+
   void DrawDot(const Eigen::Vector2d& centre, double radius_pixels, Color color);
 
   /// The ellipse (p - mean)^T covariance^-1 (p - mean) = sigmas^2; a segment if the covariance is

@@ -85,5 +85,57 @@ TEST(Canvas, PngHoldsItsPixels) {
   EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255));
 }
 
+TEST(Canvas, FineLinesLeaveTheirShareOfColourInEachColumn) {
+  for (double dy : {0.0, 0.3, 3.0, 9.9}) {
+    Canvas canvas(40, 40);
+    canvas.DrawFineLine({0, 0, 40, 40}, {5.0, 20.2}, {35.0, 20.2 + dy}, kBlack, 0.5);
+    for (int x = 6; x < 34; ++x) {
+      int ink = 0;
+      for (int y = 0; y < 40; ++y) ink += 255 - canvas.At(x, y).green;
+      EXPECT_NEAR(ink, 0.5 * 255, 2) << x << ", " << dy;
+    }
+    EXPECT_EQ(CountNotWhite(canvas, {0, 0, 5, 40}) + CountNotWhite(canvas, {35, 0, 5, 40}), 0);
+  }
+}
+
+TEST(Canvas, FineLinesAddUpWhereTheyMeet) {
+  Canvas canvas(20, 20);
+  const auto draw = [&] {
+    canvas.DrawFineLine({0, 0, 20, 20}, {10.5, 2.0}, {10.5, 18.0}, kBlack, 0.5);
+    return canvas.At(10, 10).red;
+  };
+  EXPECT_EQ(draw(), 128);
+  EXPECT_EQ(draw(), 64);
+}
+
+TEST(Canvas, FineLinesAreCutAtTheAreaHoweverFarTheyGo) {
+  constexpr PixelArea kArea{10, 10, 20, 20};
+  for (double far : {1e2, 1e6, 1e12, 1e300}) {
+    for (bool upright : {false, true}) {
+      Canvas canvas(40, 40);
+      const Eigen::Vector2d way = upright ? Eigen::Vector2d(0.0, far) : Eigen::Vector2d(far, 0.0);
+      const Eigen::Vector2d middle(20.5, 20.5);
+      canvas.DrawFineLine(kArea, middle - way, middle + way, kRed, 1.0);
+      EXPECT_EQ(canvas.At(20, 20), kRed) << far;
+      EXPECT_EQ(CountNotWhite(canvas, {0, 0, 40, 40}), 20) << far;
+    }
+  }
+}
+
+TEST(Canvas, FineLinesThatMissTheAreaOrAreNotFiniteLeaveNothing) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Canvas canvas(20, 20);
+  const PixelArea all{0, 0, 20, 20};
+  canvas.DrawFineLine(all, {-5.0, 3.0}, {-5.0, 9.0}, kRed, 1.0);
+  canvas.DrawFineLine(all, {-5.0, 3.0}, {3.0, -9.0}, kRed, 1.0);
+  canvas.DrawFineLine(all, {kNan, 3.0}, {3.0, 9.0}, kRed, 1.0);
+  canvas.DrawFineLine(all, {1.0, 3.0}, {kInfinity, 9.0}, kRed, 1.0);
+  EXPECT_EQ(CountNotWhite(canvas, all), 0);
+  canvas.DrawFineLine(all, {7.5, 8.5}, {7.5, 8.5}, kRed, 1.0);
+  EXPECT_EQ(canvas.At(7, 8), kRed);
+  EXPECT_EQ(CountNotWhite(canvas, all), 1);
+}
+
 }  // namespace
 }  // namespace loopgrid

@@ -4,52 +4,37 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "backend/base/error.h"
+#include "tests/mapping/drawing_testing.h"
 
 namespace loopgrid {
 namespace {
 
+using test_support::Backdrop;
+using test_support::Count;
+using test_support::Decode;
+using test_support::kClosure;
+using test_support::kGreen;
+using test_support::kSequential;
+using test_support::kWall;
+using test_support::SquareDrive;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-const cv::Vec3b kSequential(190, 100, 30);  // OpenCV's order: blue, green, red
-const cv::Vec3b kClosure(35, 75, 225);
-const cv::Vec3b kRobot(60, 140, 20);
-const cv::Vec3b kWall(130, 130, 130);
+constexpr int kLegendHeight = 80;  // a little more
 
-cv::Mat Decode(const std::string& png) {
-  return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
-}
-
-// Where the colour is, give or take what anti-aliasing leaves of it on thin lines.
-cv::Mat Mask(const cv::Mat& image, const cv::Vec3b& color) {
-  cv::Mat mask;
-  const cv::Scalar tolerance(45, 45, 45);
-  cv::inRange(image, cv::Scalar(color) - tolerance, cv::Scalar(color) + tolerance, mask);
-  return mask;
-}
-
-int Count(const cv::Mat& image, const cv::Vec3b& color) {
-  return cv::countNonZero(Mask(image, color));
-}
-
-// A square drive of 40 nodes, 10 m a side.
-std::vector<SE2> SquareDrive(double drift) {
-  std::vector<SE2> nodes;
-  SE2 pose;
-  for (int i = 0; i < 40; ++i) {
-    nodes.push_back(pose);
-    pose = pose * SE2(1.0, 0.0, (i % 10 == 9 ? 1.5707963 : 0.0) + drift);
-  }
-  return nodes;
+GraphState StateOf(const std::vector<SE2>& nodes, const OccupancyGrid* backdrop = nullptr) {
+  GraphState state;
+  for (const SE2& node : nodes) state.nodes.emplace_back(node.x(), node.y(), 0.0);
+  state.backdrop = backdrop;
+  return state;
 }
 
 std::vector<GraphEdge> SquareEdges() {
@@ -59,30 +44,25 @@ std::vector<GraphEdge> SquareEdges() {
   return edges;
 }
 
-// Each scan sees a wall a metre to either side.
-OccupancyGrid Backdrop(const std::vector<SE2>& poses) {
-  static const std::vector<Eigen::Vector2f> kHits = {{0.0F, 1.0F}, {0.05F, -1.0F}};
-  return RenderBackdrop(poses, [](std::size_t) { return MapScan{{0.0, 0.0}, kHits, {}}; });
-}
-
 TEST(DrawGraphBeforeAfter, ShowsMapAndBothKindsOfConstraint) {
   const std::vector<SE2> before = SquareDrive(0.02);
   const std::vector<SE2> after = SquareDrive(0.0);
   const OccupancyGrid map_before = Backdrop(before);
   const OccupancyGrid map_after = Backdrop(after);
   const std::string png =
-      DrawGraphBeforeAfter({before, &map_before}, {after, &map_after}, SquareEdges());
+      DrawGraphBeforeAfter(StateOf(before, &map_before), StateOf(after, &map_after), SquareEdges());
   const cv::Mat image = Decode(png);
   EXPECT_LE(std::max(image.cols, image.rows), 2400);
   EXPECT_GE(std::max(image.cols, image.rows), 2000);
   for (const cv::Mat& half :
        {image.colRange(0, image.cols / 2), image.colRange(image.cols / 2, image.cols)}) {
-    const cv::Mat map = half.rowRange(0, half.rows - 80);  // without the legend
+    const cv::Mat map = half.rowRange(0, half.rows - kLegendHeight);
     EXPECT_GT(Count(map, kSequential), 3000);
     EXPECT_GT(Count(map, kClosure), 30);
     EXPECT_GT(Count(map, kWall), 1000);
   }
-  EXPECT_EQ(png, DrawGraphBeforeAfter({before, &map_before}, {after, &map_after}, SquareEdges()));
+  EXPECT_EQ(png, DrawGraphBeforeAfter(StateOf(before, &map_before), StateOf(after, &map_after),
+                                      SquareEdges()));
 }
 
 TEST(DrawGraphBeforeAfter, IsOfSensibleSizeWhateverTheExtent) {
@@ -90,7 +70,7 @@ TEST(DrawGraphBeforeAfter, IsOfSensibleSizeWhateverTheExtent) {
            {0.0, 0.0}, {1e-3, 0.0}, {0.0, 5.0}, {1e5, 1.0}, {1e9, 1e9}, {0.0, 1e200}}) {
     const std::vector<SE2> nodes = {SE2(), SE2(dx, dy, 0.0)};
     const std::vector<GraphEdge> edges = {{0, 1, EdgeKind::kSequential}};
-    const cv::Mat image = Decode(DrawGraphBeforeAfter({nodes}, {nodes}, edges));
+    const cv::Mat image = Decode(DrawGraphBeforeAfter(StateOf(nodes), StateOf(nodes), edges));
     EXPECT_LE(std::max(image.cols, image.rows), 2400) << dx << ", " << dy;
     EXPECT_GE(image.cols, 1000) << dx << ", " << dy;
   }
@@ -104,44 +84,63 @@ TEST(DrawGraphBeforeAfter, RefusesEdgesAndPosesThatAreNotThere) {
   const std::vector<SE2> nodes = {SE2(), SE2(1.0, 0.0, 0.0)};
   const std::vector<SE2> bad = {SE2(), SE2(std::numeric_limits<double>::infinity(), 0.0, 0.0)};
   const std::vector<GraphEdge> edges = {{0, 2, EdgeKind::kClosure}};
-  EXPECT_THAT([&] { DrawGraphBeforeAfter({nodes}, {nodes}, edges); },
+  EXPECT_THAT([&] { DrawGraphBeforeAfter(StateOf(nodes), StateOf(nodes), edges); },
               ThrowsMessage<Error>(HasSubstr("edge 0 - 2: the graph has 2 nodes")));
-  EXPECT_THAT([&] { DrawGraphBeforeAfter({nodes}, {bad}, {}); },
+  EXPECT_THAT([&] { DrawGraphBeforeAfter(StateOf(nodes), StateOf(bad), {}); },
               ThrowsMessage<Error>(HasSubstr("node 1 is not finite")));
 }
 
-TEST(DrawUncertainty, TurnsCovariancesFromTheNodesFrameIntoTheMaps) {
-  // Two nodes that look along y and know little along their own x axis: upright ellipses.
-  const std::vector<SE2> nodes = {SE2(0.0, 0.0, 1.5707963), SE2(20.0, 0.0, 1.5707963)};
-  const Eigen::Matrix3d covariance = Eigen::Vector3d(1.0, 0.04, 0.01).asDiagonal();
-  const std::vector<Eigen::Matrix3d> covariances = {covariance, Eigen::Matrix3d::Zero()};
-  const cv::Mat image = Decode(DrawUncertainty({nodes}, covariances));
-  // The first node's half of the picture, without the legend.
-  std::vector<cv::Point> ink;
-  cv::findNonZero(Mask(image(cv::Rect(0, 0, image.cols / 2, image.rows - 80)), kSequential), ink);
-  ASSERT_FALSE(ink.empty());
-  const cv::Rect box = cv::boundingRect(ink);
-  EXPECT_NEAR(static_cast<double>(box.height) / box.width, 5.0, 0.1);
-  EXPECT_GT(Count(image, kRobot), 100);
+TEST(DrawGraphBeforeAfter, ShowsLandmarksAsDots) {
+  GraphState state = StateOf(SquareDrive(0.0));
+  EXPECT_EQ(Count(Decode(DrawGraphBeforeAfter(state, state, SquareEdges())), kGreen), 0);
+  state.landmarks = {{5.0, 5.0, 0.0}, {2.0, 7.0, 0.0}};
+  const cv::Mat image = Decode(DrawGraphBeforeAfter(state, state, SquareEdges()));
+  EXPECT_GT(Count(image.rowRange(0, image.rows - kLegendHeight), kGreen), 4 * 30);
+  state.landmarks[1].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { DrawGraphBeforeAfter(state, state, {}); },
+              ThrowsMessage<Error>(HasSubstr("landmark 1 is not finite")));
 }
 
-TEST(DrawUncertainty, LeavesOutWhatIsNoCovarianceAndCutsWhatIsHuge) {
-  const std::vector<SE2> nodes = SquareDrive(0.0);
-  std::vector<Eigen::Matrix3d> covariances(nodes.size(), 0.01 * Eigen::Matrix3d::Identity());
-  covariances[3](0, 0) = std::numeric_limits<double>::quiet_NaN();
-  covariances[4] *= -1.0;
-  covariances[5] *= 1e300;
-  covariances[6](1, 1) = std::numeric_limits<double>::infinity();
-  const OccupancyGrid map = Backdrop(nodes);
-  const cv::Mat image = Decode(DrawUncertainty({nodes, &map}, covariances));
-  EXPECT_LE(std::max(image.cols, image.rows), 2400);
-  EXPECT_GT(Count(image, kSequential), 1000);
+TEST(DrawGraphBeforeAfter, LeavesPaperBetweenTheLinesOfALargeGraph) {
+  constexpr int kNodes = 2000;
+  GraphState state;
+  std::vector<GraphEdge> edges;
+  for (int i = 0; i < kNodes; ++i) {
+    const double angle = i * 2.4;
+    const double radius = std::sqrt(1.0 * i);
+    state.nodes.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    edges.push_back({i, (i * 7 + 13) % kNodes, EdgeKind::kClosure});
+  }
+  const cv::Mat image = Decode(DrawGraphBeforeAfter(state, state, edges));
+  const cv::Mat middle =
+      image(cv::Rect(image.cols / 8, image.rows / 4, image.cols / 4, image.rows / 2));
+  const cv::Scalar mean = cv::mean(middle);
+  EXPECT_GT(mean[0], 100.0);  // of blue, of which the ink has 35 and the paper 255
+  EXPECT_LT(mean[0], 240.0);
 }
 
-TEST(DrawUncertainty, WantsOneCovarianceANode) {
-  const std::vector<SE2> nodes = SquareDrive(0.0);
-  EXPECT_THAT([&] { DrawUncertainty({nodes}, {}); },
-              ThrowsMessage<Error>(HasSubstr("0 covariances for 40 nodes")));
+TEST(DrawGraphBeforeAfter, ShowsWhatIsFartherAwayPaler) {
+  // Two poles, one behind the other as an oblique view sees it, which puts it higher.
+  GraphState state;
+  state.nodes = {{3.0, -4.0, 0.0}, {3.0, -4.0, 1.0}, {-3.0, 4.0, 0.0}, {-3.0, 4.0, 1.0}};
+  const std::vector<GraphEdge> edges = {{0, 1}, {2, 3}};
+  const cv::Mat image = Decode(DrawGraphBeforeAfter(state, state, edges, Viewpoint::kOblique));
+  const cv::Mat panels = image.rowRange(kLegendHeight, image.rows - 3 * kLegendHeight);
+  const cv::Mat upper = panels.rowRange(0, panels.rows / 2);
+  const cv::Mat lower = panels.rowRange(panels.rows / 2, panels.rows);
+  EXPECT_GT(Count(lower, kSequential), 50);
+  EXPECT_EQ(Count(upper, kSequential), 0);
+  EXPECT_GT(cv::countNonZero(upper.reshape(1) != 255), 50);
+}
+
+TEST(DrawGraphBeforeAfter, ShowsTheThirdDimensionUpwards) {
+  GraphState upright;
+  upright.nodes = {{0.0, 0.0, 0.0}, {0.0, 0.0, 10.0}};
+  const std::vector<GraphEdge> edges = {{0, 1}};
+  const cv::Mat image = Decode(DrawGraphBeforeAfter(upright, upright, edges, Viewpoint::kOblique));
+  EXPECT_GT(image.rows, image.cols);  // two tall panels
+  const cv::Mat above = Decode(DrawGraphBeforeAfter(upright, upright, edges));
+  EXPECT_LT(above.rows, above.cols);  // a point
 }
 
 TEST(RenderBackdrop, KeepsToAFewCellsHoweverLargeTheMap) {
