@@ -46,8 +46,7 @@ class KnownOptimumTest : public ::testing::TestWithParam<KnownOptimum> {};
 TEST_P(KnownOptimumTest, IsReachedFromTheStartInTheFile) {
   const char* folder = std::getenv("LOOPGRID_DATA");
   if (folder == nullptr) GTEST_SKIP() << "LOOPGRID_DATA is not set";
-  PoseGraph<SE2> graph =
-      ReadGraphOf<SE2>(std::string(folder) + "/graphs/" + GetParam().file).graph;
+  PoseGraph<SE2> graph = ReadGraphOf<SE2>(std::string(folder) + "/graphs/" + GetParam().file).graph;
   EXPECT_EQ(graph.poses.size(), GetParam().nodes);
   EXPECT_EQ(graph.constraints.size(), GetParam().constraints);
 

@@ -35,7 +35,7 @@ void OptimizeDense(PoseGraph<SE2>* graph, int held) {
       b.segment<3>(3 * c.to) += linear.J_to.transpose() * c.information * linear.error;
     }
     const Eigen::VectorXd dx =
-        -test_support::InverseWithout(test_support::DenseHessian(*graph), {held}) * b;
+        -test_support::InverseWithout(test_support::DenseHessian(*graph), {held}, 3) * b;
     for (std::size_t i = 0; i < graph->poses.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(3 * i);
       graph->poses[i] = graph->poses[i].Boxplus(dx.segment<3>(row));
