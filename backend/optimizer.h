@@ -88,6 +88,8 @@ class Optimizer {
   /// Throws Error (kUsage) if the options are not valid.
   explicit Optimizer(const OptimizerOptions& options = {});
 
+  const OptimizerOptions& options() const { return options_; }
+
   /// Moves the graph's poses and landmarks, from where they are, to a minimum of F, or to the best
   /// point on the way. Throws Error (kInput) if the graph is not valid (see Validate); a graph with
   /// several components is optimised as such.

@@ -253,6 +253,7 @@ Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::Matrix
 
 template class SparseCholesky<2>;
 template class SparseCholesky<3>;
+template class SparseCholesky<4>;
 template class SparseCholesky<6>;
 
 }  // namespace loopgrid

@@ -73,6 +73,7 @@ class SparseCholesky {
 
 extern template class SparseCholesky<2>;
 extern template class SparseCholesky<3>;
+extern template class SparseCholesky<4>;
 extern template class SparseCholesky<6>;
 
 }  // namespace loopgrid
