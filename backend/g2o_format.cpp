@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "backend/graph_text.h"
 
@@ -13,6 +15,9 @@ namespace {
 
 /// What six digits explain of a quaternion's distance from length 1.
 constexpr double kUnitTolerance = 1e-5;
+
+template <typename Pose>
+constexpr int kPointSize = Pose::Point::RowsAtCompileTime;
 
 template <typename Pose>
 Pose ReadPose(GraphLine* line);
@@ -56,41 +61,72 @@ void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
   builder->AddConstraint({from, to, line->number()}, constraint);
 }
 
-void ReadLandmark(GraphLine* line, GraphBuilder<SE2>* builder) {
+template <typename Pose>
+void ReadLandmark(GraphLine* line, GraphBuilder<Pose>* builder) {
   const std::int64_t id = line->Id();
-  const Eigen::Vector2d p_map = line->Numbers<2>();
+  const typename Pose::Point p_map = line->Numbers<kPointSize<Pose>>();
   line->End();
   builder->AddLandmark({id, line->number()}, p_map);
 }
 
-void ReadObservation(GraphLine* line, GraphBuilder<SE2>* builder) {
+void ReadSensor(GraphLine* line, GraphBuilder<SE3>* builder) {
+  const std::int64_t id = line->Id();
+  const SE3 T_node_sensor = ReadPose<SE3>(line);
+  line->End();
+  builder->AddSensor({id, line->number()}, T_node_sensor);
+}
+
+template <typename Pose>
+void ReadObservation(GraphLine* line, GraphBuilder<Pose>* builder) {
+  constexpr bool kHasSensor = std::is_same_v<Pose, SE3>;
   const std::int64_t node = line->Id();
   const std::int64_t landmark = line->Id();
-  LandmarkObservation<SE2> observation;
-  observation.p_node = line->Numbers<2>();
-  observation.information = line->UpperTriangle<2>();
+  Pose T_node_sensor;
+  if constexpr (kHasSensor) T_node_sensor = builder->Sensor({line->Id(), line->number()});
+  LandmarkObservation<Pose> observation;
+  observation.p_node = T_node_sensor * line->Numbers<kPointSize<Pose>>();
+  const auto information = line->UpperTriangle<kPointSize<Pose>>();
   line->End();
-  line->RequireInformation(observation.information);
+  line->RequireInformation(information);
+  const auto R = T_node_sensor.rotation();
+  observation.information = R * information * R.transpose();
   builder->AddObservation({node, landmark, line->number()}, observation);
 }
 
 constexpr std::array<GraphTag<SE2>, 4> kTags2 = {{
     {"EDGE_SE2", "from to x y theta I11 I12 I13 I22 I23 I33", ReadConstraint<SE2>},
-    {"EDGE_SE2_XY", "node landmark x y I11 I12 I22", ReadObservation},
+    {"EDGE_SE2_XY", "node landmark x y I11 I12 I22", ReadObservation<SE2>},
     {"VERTEX_SE2", "id x y theta", ReadNode<SE2>},
-    {"VERTEX_XY", "id x y", ReadLandmark},
+    {"VERTEX_XY", "id x y", ReadLandmark<SE2>},
 }};
 
-constexpr std::array<GraphTag<SE3>, 2> kTags3 = {{
+constexpr std::array<GraphTag<SE3>, 5> kTags3 = {{
     {"EDGE_SE3:QUAT", "from to x y z qx qy qz qw I11 I12 ... I66", ReadConstraint<SE3>},
+    {"EDGE_SE3_TRACKXYZ", "node landmark sensor x y z I11 I12 I13 I22 I23 I33",
+     ReadObservation<SE3>},
     {"VERTEX_SE3:QUAT", "id x y z qx qy qz qw", ReadNode<SE3>},
+    {"VERTEX_TRACKXYZ", "id x y z", ReadLandmark<SE3>},
+    {"PARAMS_SE3OFFSET", "sensor x y z qx qy qz qw", ReadSensor},
 }};
 
-void Append(const SE2& pose, std::string* text) { AppendNumbers(pose.coordinates(), text); }
+/// What lines are called when they are written.
+struct Tags {
+  const char* node;
+  const char* constraint;
+  const char* landmark;
+  const char* observation;
+};
+template <typename Pose>
+constexpr Tags kWritten = {"VERTEX_SE2", "EDGE_SE2", "VERTEX_XY", "EDGE_SE2_XY"};
+template <>
+constexpr Tags kWritten<SE3> = {"VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", "VERTEX_TRACKXYZ",
+                                "EDGE_SE3_TRACKXYZ"};
 
-void Append(const SE3& pose, std::string* text) {
-  AppendNumbers(pose.translation(), text);
-  AppendNumbers(pose.quaternion().coeffs(), text);
+void Append(const SE2& pose, GraphText* text) { text->Numbers(pose.coordinates()); }
+
+void Append(const SE3& pose, GraphText* text) {
+  text->Numbers(pose.translation());
+  text->Numbers(pose.quaternion().coeffs());  // x y z w
 }
 
 }  // namespace
@@ -107,35 +143,37 @@ std::span<const GraphTag<SE3>> G2oTags<SE3>() {
 
 template <typename Pose>
 std::string FormatG2o(const PoseGraph<Pose>& graph, const GraphIds& ids) {
-  constexpr bool kPlanar = Pose::kDof == 3;
+  constexpr bool kHasSensor = std::is_same_v<Pose, SE3>;
+  constexpr std::int64_t kSensor = 0;
   const GraphNames names(graph.poses.size(), ids);
-  std::string text;
+  const Tags& tags = kWritten<Pose>;
+  GraphText text;
+  if (kHasSensor && !graph.observations.empty()) {
+    text.Begin("PARAMS_SE3OFFSET", {kSensor});
+    Append(Pose(), &text);
+  }
   for (std::size_t node = 0; node < graph.poses.size(); ++node) {
-    AppendTag(kPlanar ? "VERTEX_SE2" : "VERTEX_SE3:QUAT", {names.node(node)}, &text);
+    text.Begin(tags.node, {names.node(node)});
     Append(graph.poses[node], &text);
-    text += '\n';
   }
   for (std::size_t landmark = 0; landmark < graph.landmarks.size(); ++landmark) {
-    AppendTag("VERTEX_XY", {names.landmark(landmark)}, &text);
-    AppendNumbers(graph.landmarks[landmark], &text);
-    text += '\n';
+    text.Begin(tags.landmark, {names.landmark(landmark)});
+    text.Numbers(graph.landmarks[landmark]);
   }
-  AppendFixed(graph.fixed, names, &text);
+  for (int node : graph.fixed) text.Begin("FIX", {names.node(node)});
   for (const Constraint<Pose>& constraint : graph.constraints) {
-    AppendTag(kPlanar ? "EDGE_SE2" : "EDGE_SE3:QUAT",
-              {names.node(constraint.from), names.node(constraint.to)}, &text);
+    text.Begin(tags.constraint, {names.node(constraint.from), names.node(constraint.to)});
     Append(constraint.T_from_to, &text);
-    AppendUpperTriangle(constraint.information, &text);
-    text += '\n';
+    text.UpperTriangle(constraint.information);
   }
   for (const LandmarkObservation<Pose>& observation : graph.observations) {
-    AppendTag("EDGE_SE2_XY", {names.node(observation.node), names.landmark(observation.landmark)},
-              &text);
-    AppendNumbers(observation.p_node, &text);
-    AppendUpperTriangle(observation.information, &text);
-    text += '\n';
+    text.Begin(tags.observation,
+               {names.node(observation.node), names.landmark(observation.landmark)});
+    if (kHasSensor) text.Id(kSensor);
+    text.Numbers(observation.p_node);
+    text.UpperTriangle(observation.information);
   }
-  return text;
+  return std::move(text).Finish();
 }
 
 template std::string FormatG2o(const PoseGraph<SE2>&, const GraphIds&);

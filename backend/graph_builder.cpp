@@ -52,6 +52,19 @@ void GraphBuilder<Pose>::AddObservation(const EdgeEnds& ends,
 }
 
 template <typename Pose>
+void GraphBuilder<Pose>::AddSensor(const VertexMention& name, const Pose& T_node_sensor) {
+  if (sensors_.emplace(name.id, T_node_sensor).second) return;
+  throw ErrorAt(name.line, fmt::format("parameter {} for the second time", name.id));
+}
+
+template <typename Pose>
+const Pose& GraphBuilder<Pose>::Sensor(const VertexMention& name) const {
+  const auto found = sensors_.find(name.id);
+  if (found != sensors_.end()) return found->second;
+  throw ErrorAt(name.line, fmt::format("parameter {} is not in the lines before", name.id));
+}
+
+template <typename Pose>
 GraphFile<Pose> GraphBuilder<Pose>::Finish(const std::vector<VertexMention>& fixed,
                                            GraphNotes* notes) {
   PoseGraph<Pose>& graph = file_.graph;

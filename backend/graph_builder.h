@@ -39,6 +39,10 @@ class GraphBuilder {
   void AddConstraint(const EdgeEnds& ends, const Constraint<Pose>& constraint);
   void AddObservation(const EdgeEnds& ends, const LandmarkObservation<Pose>& observation);
 
+  /// Where on a node a sensor sits; observations are given in its frame. Known to lines after it.
+  void AddSensor(const VertexMention& name, const Pose& T_node_sensor);
+  const Pose& Sensor(const VertexMention& name) const;
+
   /// The graph, once all lines have been read. Nothing may follow. Adds to `notes`.
   GraphFile<Pose> Finish(const std::vector<VertexMention>& fixed, GraphNotes* notes);
 
@@ -56,6 +60,7 @@ class GraphBuilder {
   std::string path_;
   GraphFile<Pose> file_;
   std::unordered_map<std::int64_t, Vertex> vertices_;
+  std::unordered_map<std::int64_t, Pose> sensors_;
   std::vector<EdgeEnds> constraints_;  // of graph.constraints, and so on
   std::vector<EdgeEnds> observations_;
 };

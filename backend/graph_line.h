@@ -65,9 +65,9 @@ class GraphLine {
 
  private:
   double Number() {
+    FieldCursor field = fields_;
     double number = 0.0;
-    const std::string_view field = fields_.Next();
-    if (!ParseNumber(field, &number)) throw BadField(field);
+    if (!fields_.NextDecimal(&number)) throw BadField(field.Next());
     return number;
   }
   Error BadField(std::string_view field) const;

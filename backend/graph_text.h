@@ -1,6 +1,6 @@
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/compile.h>
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include "backend/graph_file.h"
 
@@ -37,34 +37,45 @@ class GraphNames {
   const GraphIds& ids_;
 };
 
-/// The beginning of a line.
-inline void AppendTag(std::string_view tag, std::initializer_list<std::int64_t> names,
-                      std::string* text) {
-  text->append(tag);
-  for (std::int64_t name : names) fmt::format_to(std::back_inserter(*text), " {}", name);
-}
+/// The text of a graph file, line after line.
+class GraphText {
+ public:
+  /// Begins a line.
+  void Begin(std::string_view tag, std::initializer_list<std::int64_t> ids) {
+    if (!text_.empty()) text_ += '\n';
+    text_ += tag;
+    for (std::int64_t id : ids) Id(id);
+  }
 
-/// With as many digits as it takes to read the same number again.
-template <typename Numbers>
-void AppendNumbers(const Numbers& numbers, std::string* text) {
-  for (double number : numbers) fmt::format_to(std::back_inserter(*text), " {}", number);
-}
+  void Id(std::int64_t id) { Append(id); }
 
-/// Row by row.
-template <typename Matrix>
-void AppendUpperTriangle(const Matrix& matrix, std::string* text) {
-  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    for (Eigen::Index column = row; column < matrix.cols(); ++column) {
-      fmt::format_to(std::back_inserter(*text), " {}", matrix(row, column));
+  /// With as many digits as it takes to read the same numbers again.
+  template <typename Vector>
+  void Numbers(const Vector& numbers) {
+    for (double number : numbers) Append(number);
+  }
+
+  /// Row by row.
+  template <typename Matrix>
+  void UpperTriangle(const Matrix& matrix) {
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      for (Eigen::Index column = row; column < matrix.cols(); ++column) Append(matrix(row, column));
     }
   }
-}
 
-inline void AppendFixed(const std::vector<int>& fixed, const GraphNames& names, std::string* text) {
-  for (int node : fixed) {
-    AppendTag("FIX", {names.node(node)}, text);
-    text->push_back('\n');
+  std::string Finish() && {
+    if (!text_.empty()) text_ += '\n';
+    return std::move(text_);
   }
-}
+
+ private:
+  template <typename Number>
+  void Append(Number number) {
+    text_ += ' ';
+    fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{}"), number);
+  }
+
+  std::string text_;
+};
 
 }  // namespace loopgrid

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "backend/geometry/euler.h"
 #include "backend/graph_text.h"
@@ -119,21 +120,21 @@ constexpr std::array<GraphTag<SE3>, 2> kTags3 = {{
     {"VERTEX3", "id x y z roll pitch yaw", ReadNode<SE3>},
 }};
 
-void Append(const SE2& pose, std::string* text) { AppendNumbers(pose.coordinates(), text); }
+void Append(const SE2& pose, GraphText* text) { text->Numbers(pose.coordinates()); }
 
-void Append(const SE3& pose, std::string* text) {
-  AppendNumbers(pose.translation(), text);
-  AppendNumbers(RollPitchYaw(pose.quaternion()), text);
+void Append(const SE3& pose, GraphText* text) {
+  text->Numbers(pose.translation());
+  text->Numbers(RollPitchYaw(pose.quaternion()));
 }
 
-void AppendInformation(const Constraint<SE2>& constraint, std::string* text) {
+void AppendInformation(const Constraint<SE2>& constraint, GraphText* text) {
   const Eigen::Matrix3d& I = constraint.information;
-  AppendNumbers(std::array{I(0, 0), I(0, 1), I(1, 1), I(2, 2), I(0, 2), I(1, 2)}, text);
+  text->Numbers(std::array{I(0, 0), I(0, 1), I(1, 1), I(2, 2), I(0, 2), I(1, 2)});
 }
 
-void AppendInformation(const Constraint<SE3>& constraint, std::string* text) {
+void AppendInformation(const Constraint<SE3>& constraint, GraphText* text) {
   const Eigen::Matrix3d J = AnglesByVectorPart(constraint.T_from_to.quaternion());
-  AppendUpperTriangle(Transform(constraint.information, J.inverse()), text);
+  text->UpperTriangle(Transform(constraint.information, J.inverse()));
 }
 
 }  // namespace
@@ -152,21 +153,19 @@ template <typename Pose>
 std::string FormatToro(const PoseGraph<Pose>& graph, const GraphIds& ids) {
   constexpr bool kPlanar = Pose::kDof == 3;
   const GraphNames names(graph.poses.size(), ids);
-  std::string text;
+  GraphText text;
   for (std::size_t node = 0; node < graph.poses.size(); ++node) {
-    AppendTag(kPlanar ? "VERTEX2" : "VERTEX3", {names.node(node)}, &text);
+    text.Begin(kPlanar ? "VERTEX2" : "VERTEX3", {names.node(node)});
     Append(graph.poses[node], &text);
-    text += '\n';
   }
-  AppendFixed(graph.fixed, names, &text);
+  for (int node : graph.fixed) text.Begin("FIX", {names.node(node)});
   for (const Constraint<Pose>& constraint : graph.constraints) {
-    AppendTag(kPlanar ? "EDGE2" : "EDGE3", {names.node(constraint.from), names.node(constraint.to)},
-              &text);
+    text.Begin(kPlanar ? "EDGE2" : "EDGE3",
+               {names.node(constraint.from), names.node(constraint.to)});
     Append(constraint.T_from_to, &text);
     AppendInformation(constraint, &text);
-    text += '\n';
   }
-  return text;
+  return std::move(text).Finish();
 }
 
 template std::string FormatToro(const PoseGraph<SE2>&, const GraphIds&);

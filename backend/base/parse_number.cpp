@@ -21,15 +21,19 @@ bool IsBetweenFloats(double value) {
 
 }  // namespace
 
-// Clinger's fast path ("How to read floating point numbers accurately", 1990): digits and power of
-// ten are exact, so one division rounds correctly. Rounding again to float is right too unless the
-// double fell between two floats, where the side it came from is lost.
-bool FieldCursor::NextDecimal(float* value) {
+/// The next field, if it is digits with at most a sign and a point, and few enough of them. Where
+/// it is not, the position stays.
+/// Clinger's fast path ("How to read floating point numbers accurately", 1990): digits and power of
+/// ten are exact, so one division rounds correctly.
+bool FieldCursor::NextShortDecimal(double* value) {
   SkipBlanks();
   const char* p = position_;
+  const bool is_negative = p != end_ && *p == '-';
+  if (is_negative) ++p;
+  const char* first = p;
   std::uint64_t digits = 0;
   for (; p != end_ && IsDigit(*p); ++p) digits = digits * 10 + static_cast<unsigned>(*p - '0');
-  std::ptrdiff_t digit_count = p - position_;
+  std::ptrdiff_t digit_count = p - first;
   std::ptrdiff_t decimals = 0;
   if (p != end_ && *p == '.') {
     const char* point = p++;
@@ -37,14 +41,28 @@ bool FieldCursor::NextDecimal(float* value) {
     decimals = p - point - 1;
     digit_count += decimals;
   }
-  const bool whole_field = p == end_ || IsBlank(*p);
-  if (!whole_field || digit_count < 1 || digit_count > kMaxDigits) return Next(value);
-  const double parsed =
-      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
-  if (IsBetweenFloats(parsed)) return Next(value);
+  const bool is_whole_field = p == end_ || IsBlank(*p);
+  if (!is_whole_field || digit_count < 1 || digit_count > kMaxDigits) return false;
   position_ = p;
-  *value = static_cast<float>(parsed);
+  const double magnitude =
+      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+  *value = is_negative ? -magnitude : magnitude;
   return true;
+}
+
+bool FieldCursor::NextDecimal(double* value) { return NextShortDecimal(value) || Next(value); }
+
+// Rounding to float after rounding to double is right unless the double fell between two floats,
+// where the side it came from is lost.
+bool FieldCursor::NextDecimal(float* value) {
+  const char* before = position_;
+  double parsed = 0.0;
+  if (NextShortDecimal(&parsed) && !IsBetweenFloats(parsed)) {
+    *value = static_cast<float>(parsed);
+    return true;
+  }
+  position_ = before;
+  return Next(value);
 }
 
 }  // namespace loopgrid

@@ -1,5 +1,5 @@
-// Any bytes as a graph file: nothing may crash, and a graph that is accepted is sound and comes
-// back unchanged when it is written as g2o and read again.
+// Any bytes as a graph file, g2o or TORO: nothing may crash, and a graph that is accepted is sound,
+// comes back unchanged when it is written as g2o and read again, and in 2D as TORO, too.
 
 #include <cstdint>
 #include <cstdlib>
@@ -15,27 +15,37 @@ namespace loopgrid {
 namespace {
 
 template <typename Pose>
-void RoundTrip(const GraphFile<Pose>& file) {
-  Validate(file.graph);
-  const std::string text = FormatGraph(file.graph, file.ids);
+void RequireRoundTrip(const GraphFile<Pose>& file, GraphFormat format) {
+  const std::string text = FormatGraph(file.graph, file.ids, format);
   const test_support::MemoryFile written(text);
   const auto again = ReadGraphOf<Pose>(written.path());
-  if (FormatGraph(again.graph, again.ids) != text) std::abort();
+  if (FormatGraph(again.graph, again.ids, format) != text) std::abort();
+}
+
+void Check(const GraphFile<SE2>& file) {
+  Validate(file.graph);
+  RequireRoundTrip(file, GraphFormat::kG2o);
+  if (file.graph.landmarks.empty()) RequireRoundTrip(file, GraphFormat::kToro);
+}
+
+void Check(const GraphFile<SE3>& file) {
+  Validate(file.graph);
+  RequireRoundTrip(file, GraphFormat::kG2o);
+  if (file.graph.landmarks.empty()) (void)FormatGraph(file.graph, file.ids, GraphFormat::kToro);
 }
 
 }  // namespace
 }  // namespace loopgrid
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace loopgrid;  // NOLINT(google-build-using-namespace)
-  const test_support::MemoryFile file(
+  const loopgrid::test_support::MemoryFile file(
       std::string_view(reinterpret_cast<const char*>(data), size));
-  AnyGraphFile read;
+  loopgrid::AnyGraphFile read;
   try {
-    read = ReadGraph(file.path());
-  } catch (const Error&) {
+    read = loopgrid::ReadGraph(file.path(), {.lenient = true});
+  } catch (const loopgrid::Error&) {
     return 0;
   }
-  std::visit([](const auto& found) { RoundTrip(found); }, read);
+  std::visit([](const auto& found) { loopgrid::Check(found); }, read);
   return 0;
 }
