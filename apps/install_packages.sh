@@ -13,7 +13,7 @@ packages=(
 if [[ "${1:-}" == tests ]]; then
   packages+=(
     clang libclang-rt-14-dev clang-format
-    libgtest-dev libgmock-dev libbenchmark-dev
+    libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
   )
 fi
 

@@ -1,61 +1,57 @@
-// Optimising pose graphs: from the start in the file to the optimum, the parts of one iteration,
-// and a graph that is optimised after each node while it grows.
+// The parts of one iteration on the way to an optimum, covariances, and a graph that is optimised
+// after each node while it grows. Whole optimisations are in solver_benchmark.cpp.
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <list>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "backend/marginals.h"
 #include "backend/optimizer.h"
+#include "backend/selected_inverse.h"
 #include "tests/support/benchmark_graphs.h"
 #include "tests/support/cholmod_solver.h"
 
 namespace loopgrid {
 namespace {
 
-using test_support::NamedGraph;
-
-void ToOptimum(benchmark::State& state, const PoseGraph<SE2>& start) {
-  OptimizerResult result;
-  for (auto _ : state) {
-    state.PauseTiming();
-    PoseGraph<SE2> graph = start;
-    state.ResumeTiming();
-    result = Optimizer<SE2>().Optimize(&graph);
-  }
-  state.counters["iterations"] = result.iterations;
-  state.counters["F"] = result.final_error;
-  state.counters["per_iteration"] =
-      benchmark::Counter(result.iterations, benchmark::Counter::kIsIterationInvariantRate |
-                                                benchmark::Counter::kInvert);
-}
-
-/// Linearised once, for the benchmarks of the parts.
+/// Linearised once.
+template <typename Pose>
 struct System {
-  explicit System(const PoseGraph<SE2>& graph) {
+  explicit System(const PoseGraph<Pose>& graph) {
     equations.SetStructure(graph);
     equations.Linearize(graph, {});
+    factor.Analyze(equations.hessian());
+    is_definite = factor.Factorize(equations.hessian());
   }
-  NormalEquations<SE2> equations;
+  NormalEquations<Pose> equations;
+  SparseCholesky<Pose::kDof> factor;
+  bool is_definite = false;
 };
 
-void Linearize(benchmark::State& state, const PoseGraph<SE2>& graph) {
-  System system(graph);
+template <typename Pose>
+void Linearize(benchmark::State& state, const PoseGraph<Pose>& graph, int threads) {
+  System<Pose> system(graph);
+  WorkerPool workers(threads);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(system.equations.Linearize(graph, {}));
+    benchmark::DoNotOptimize(system.equations.Linearize(graph, {}, &workers));
   }
 }
 
-void Analyze(benchmark::State& state, const PoseGraph<SE2>& graph) {
-  const System system(graph);
-  for (auto _ : state) SparseCholesky<3>().Analyze(system.equations.hessian());
+template <typename Pose>
+void Analyze(benchmark::State& state, const PoseGraph<Pose>& graph) {
+  const System<Pose> system(graph);
+  for (auto _ : state) SparseCholesky<Pose::kDof>().Analyze(system.equations.hessian());
 }
 
-template <typename Solver>
-void Factorize(benchmark::State& state, const PoseGraph<SE2>& graph) {
-  const System system(graph);
+template <typename Solver, typename Pose>
+void Factorize(benchmark::State& state, const PoseGraph<Pose>& graph) {
+  const System<Pose> system(graph);
   Solver solver;
   solver.Analyze(system.equations.hessian());
   for (auto _ : state) {
@@ -63,24 +59,43 @@ void Factorize(benchmark::State& state, const PoseGraph<SE2>& graph) {
   }
 }
 
-void Solve(benchmark::State& state, const PoseGraph<SE2>& graph) {
-  const System system(graph);
-  SparseCholesky<3> factor;
-  factor.Analyze(system.equations.hessian());
-  if (!factor.Factorize(system.equations.hessian())) state.SkipWithError("indefinite");
-  for (auto _ : state) benchmark::DoNotOptimize(factor.Solve(system.equations.gradient()));
+template <typename Pose>
+void Solve(benchmark::State& state, const PoseGraph<Pose>& graph) {
+  const System<Pose> system(graph);
+  if (!system.is_definite) state.SkipWithError("indefinite");
+  for (auto _ : state) benchmark::DoNotOptimize(system.factor.Solve(system.equations.gradient()));
+}
+
+/// Covariances of all nodes relative to the first one, and relative to the last one.
+template <typename Pose>
+void Diagonal(benchmark::State& state, const PoseGraph<Pose>& graph) {
+  const System<Pose> system(graph);
+  if (!system.is_definite) state.SkipWithError("indefinite");
+  for (auto _ : state) benchmark::DoNotOptimize(InverseDiagonal(system.factor));
+}
+
+template <typename Pose>
+void RelativeToLast(benchmark::State& state, const PoseGraph<Pose>& graph) {
+  const System<Pose> system(graph);
+  if (!system.is_definite) state.SkipWithError("indefinite");
+  const int last = static_cast<int>(graph.poses.size()) - 1;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        Marginals<Pose>(graph.poses, system.equations, system.factor).RelativeTo(last));
+  }
 }
 
 /// The nodes one after the other, each with the constraints to those before it.
-void NodeByNode(benchmark::State& state, const PoseGraph<SE2>& whole) {
-  std::vector<Constraint<SE2>> constraints = whole.constraints;
+template <typename Pose>
+void NodeByNode(benchmark::State& state, const PoseGraph<Pose>& whole) {
+  std::vector<Constraint<Pose>> constraints = whole.constraints;
   std::stable_sort(constraints.begin(), constraints.end(), [](const auto& a, const auto& b) {
     return std::max(a.from, a.to) < std::max(b.from, b.to);
   });
   double error = 0.0;
   for (auto _ : state) {
-    PoseGraph<SE2> graph;
-    Optimizer<SE2> optimizer;
+    PoseGraph<Pose> graph;
+    Optimizer<Pose> optimizer;
     auto next = constraints.begin();
     for (int node = 0; node < static_cast<int>(whole.poses.size()); ++node) {
       graph.poses.push_back(whole.poses[static_cast<std::size_t>(node)]);
@@ -96,25 +111,34 @@ void NodeByNode(benchmark::State& state, const PoseGraph<SE2>& whole) {
   state.counters["F"] = error;
 }
 
+template <typename Pose>
+void Register(const std::string& name, const PoseGraph<Pose>& graph) {
+  const auto add = [&](const char* what, auto run) {
+    benchmark::RegisterBenchmark((std::string(what) + "/" + name).c_str(),
+                                 [run, &graph](benchmark::State& state) { run(state, graph); })
+        ->Unit(benchmark::kMillisecond);
+  };
+  using State = benchmark::State;
+  using Graph = PoseGraph<Pose>;
+  add("Linearize", [](State& state, const Graph& g) { Linearize(state, g, 1); });
+  add("LinearizeOnTwoThreads", [](State& state, const Graph& g) { Linearize(state, g, 2); });
+  add("Analyze", Analyze<Pose>);
+  add("Factorize", Factorize<SparseCholesky<Pose::kDof>, Pose>);
+  if constexpr (Pose::kDof == 3) {
+    add("FactorizeByCholmod", Factorize<test_support::CholmodSolver, Pose>);
+  }
+  add("Solve", Solve<Pose>);
+  add("Diagonal", Diagonal<Pose>);
+  add("RelativeToLast", RelativeToLast<Pose>);
+  constexpr std::size_t kFew = 2000;
+  if (graph.poses.size() < kFew) add("NodeByNode", NodeByNode<Pose>);
+}
+
 const bool kRegistered = [] {
-  using benchmark::kMillisecond;
-  using benchmark::RegisterBenchmark;
-  static const std::vector<NamedGraph> graphs = test_support::BenchmarkGraphs();
-  for (const NamedGraph& named : graphs) {
-    const PoseGraph<SE2>& graph = named.graph;
-    const auto add = [&](const char* what, void (*run)(benchmark::State&, const PoseGraph<SE2>&)) {
-      const std::string name = std::string(what) + "/" + named.name;
-      return RegisterBenchmark(name.c_str(),
-                               [run, &graph](benchmark::State& state) { run(state, graph); })
-          ->Unit(kMillisecond);
-    };
-    add("ToOptimum", ToOptimum);
-    add("Linearize", Linearize);
-    add("Analyze", Analyze);
-    add("Factorize", Factorize<SparseCholesky<3>>);
-    add("FactorizeByCholmod", Factorize<test_support::CholmodSolver>);
-    add("Solve", Solve);
-    if (graph.poses.size() < 2000) add("NodeByNode", NodeByNode);
+  static std::list<test_support::AnyGraph> graphs;
+  for (const std::string& name : test_support::BenchmarkGraphNames()) {
+    graphs.push_back(test_support::BenchmarkGraph(name));
+    std::visit([&](const auto& graph) { Register(name, graph); }, graphs.back());
   }
   return true;
 }();

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "backend/graph_file.h"
@@ -10,22 +12,31 @@
 
 namespace loopgrid::test_support {
 
-struct NamedGraph {
-  std::string name;
-  PoseGraph<SE2> graph;
-};
+using AnyGraph = std::variant<PoseGraph<SE2>, PoseGraph<SE3>>;
 
 /// What benchmarks of the back-end run on: a generated city and, where LOOPGRID_DATA names the
 /// folder that has them in graphs/, public benchmark graphs.
-inline std::vector<NamedGraph> BenchmarkGraphs() {
-  std::vector<NamedGraph> graphs = {{"city1700", ManhattanWorld(1700, 4, 1)}};
+inline std::vector<std::string> BenchmarkGraphNames() {
+  std::vector<std::string> names = {"city1700"};
   const char* folder = std::getenv("LOOPGRID_DATA");
-  if (folder == nullptr) return graphs;
-  for (const char* name : {"intel", "intel-943", "manhattan3500", "city10000"}) {
-    const auto path = std::filesystem::path(folder) / "graphs" / (std::string(name) + ".g2o");
-    graphs.push_back({name, ReadGraphOf<SE2>(path.string()).graph});
+  if (folder == nullptr) return names;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(folder) / "graphs")) {
+    names.push_back(entry.path().filename().string());
   }
-  return graphs;
+  std::sort(names.begin() + 1, names.end());
+  return names;
+}
+
+/// One of those; `city` with a number is a generated one of so many nodes.
+inline AnyGraph BenchmarkGraph(const std::string& name) {
+  if (name.starts_with("city") && name.find('.') == std::string::npos) {
+    return ManhattanWorld(std::stoi(name.substr(4)), 4, 1);
+  }
+  const char* folder = std::getenv("LOOPGRID_DATA");
+  const auto path = std::filesystem::path(folder == nullptr ? "" : folder) / "graphs" / name;
+  return std::visit([](const auto& file) -> AnyGraph { return file.graph; },
+                    ReadGraph(path.string()));
 }
 
 }  // namespace loopgrid::test_support
