@@ -14,6 +14,9 @@ namespace {
 /// Added to information matrices, as a share, where they must be regular.
 constexpr double kRegular = 1e-12;
 
+/// In 2D, radians: beyond it an angle has no useful minorant that touches.
+constexpr double kLargestAngle = std::numbers::pi - 1e-3;
+
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 template <typename Derived>
@@ -37,26 +40,25 @@ double UncorrelatedShare(const Eigen::Matrix<double, kDof, kDof>& information) {
   return std::clamp(solver.eigenvalues()[0], 0.0, 1.0);
 }
 
-/// Of omega * theta^2 + 2 * slope * theta, theta being the angle of R_measured^T * P. Up to a
-/// constant that is omega * psi^2 with psi = theta + slope / omega; the square of an angle is a
-/// convex function of minus its cosine, so the tangent there is below it.
-void MinorizeRotation(const SE2& measured, const SE2::Tangent& error, double omega, double slope,
+/// Of omega * theta^2 + 2 * slope * theta, theta being the angle of R_measured^T * P: up to a
+/// constant omega * psi^2 with psi = theta + slope / omega. The square of an angle is a convex
+/// function of minus its cosine, so the tangent there is below it. False near half a turn, where
+/// that is too steep.
+bool MinorizeRotation(const SE2& measured, const SE2::Tangent& error, double omega, double slope,
                       MinorantOf3dRotation /*kind*/, QuadraticMinorant<SE2>* minorant) {
-  if (omega <= 0.0) return;
+  if (omega <= 0.0) return slope == 0.0;
   const double shift = slope / omega;
   const double psi = error.z() + shift;
+  if (std::abs(psi) > kLargestAngle) return false;
   const double psi_over_sine = std::abs(psi) < 1e-6 ? 1.0 : psi / std::sin(psi);
   minorant->M = -0.5 * omega * psi_over_sine * SE2(0.0, 0.0, measured.theta() - shift).rotation();
-}
-
-bool HasTangent(const SE2::Tangent& error, double omega, double slope) {
-  return omega * (std::numbers::pi - std::abs(error.z())) > std::abs(slope);
+  return true;
 }
 
 /// Of q^T * omega * q + 2 * slope^T * q, (w, q) being the quaternion of E = R_measured^T * P, w >=
 /// 0. The first term is tr((E - I) W (E - I)^T) with W = tr(omega) / 8 I - omega / 4, and w * q is
 /// linear in E.
-void MinorizeRotation(const SE3& measured, const SE3::Tangent& error, Eigen::Matrix3d omega,
+bool MinorizeRotation(const SE3& measured, const SE3::Tangent& error, Eigen::Matrix3d omega,
                       const Eigen::Vector3d& slope, MinorantOf3dRotation kind,
                       QuadraticMinorant<SE3>* minorant) {
   const SE3 E(error);
@@ -77,9 +79,6 @@ void MinorizeRotation(const SE3& measured, const SE3::Tangent& error, Eigen::Mat
     W -= b_over_8 * E.rotation() * (Eigen::Matrix3d::Identity() - 2.0 * u * u.transpose());
   }
   minorant->M = measured.rotation() * (0.25 * Skew(slope) - W);
-}
-
-bool HasTangent(const SE3::Tangent&, const Eigen::Matrix3d&, const Eigen::Vector3d&) {
   return true;
 }
 
@@ -114,15 +113,20 @@ QuadraticMinorant<Pose> Minorize(const PoseGraph<Pose>& graph, const Constraint<
   slope.template tail<kTurns>() -= omega * error.template tail<kTurns>();
 
   QuadraticMinorant<Pose> minorant;
-  const auto turn_slope = Part(slope.template tail<kTurns>());
-  if (!HasTangent(error, Part(omega), turn_slope)) {
-    minorant.slack = error.dot(c.information * error);  // that is: the minorant is 0
-    return minorant;
+  const auto minorize_rotation = [&] {
+    return MinorizeRotation(c.T_from_to, error, Part(omega), Part(slope.template tail<kTurns>()),
+                            kind, &minorant);
+  };
+  if (!minorize_rotation()) {
+    // 0 is below the rest, too; and below the rotational part.
+    minorant.slack = error.dot(slope);
+    slope.setZero();
+    const auto turn = error.template tail<kTurns>();
+    if (!minorize_rotation()) minorant.slack += turn.dot(omega * turn);
   }
   minorant.alpha = alpha;
   minorant.beta =
       c.T_from_to.rotation() * slope.template head<kDim>() - alpha * c.T_from_to.translation();
-  MinorizeRotation(c.T_from_to, error, Part(omega), turn_slope, kind, &minorant);
   return minorant;
 }
 
