@@ -17,8 +17,9 @@ constexpr double kSmallestPivot = 1e-13;
 /// order was found, a new order is worth its time.
 constexpr double kWorthOrdering = 1.2;
 
-/// Products of blocks from which on the better order of nested dissection pays for its own time.
-constexpr double kWorthDissecting = 1e6;
+/// Multiplications in the factorisation per column and end of an off-diagonal block from which on
+/// the better order of nested dissection pays for its own time, within a few factorisations.
+constexpr double kWorthDissecting = 1e4;
 
 using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
@@ -37,7 +38,8 @@ template <int kDim>
 void SparseCholesky<kDim>::Analyze(const Matrix& H) {
   if (!KeepOrder(H)) {
     structure_ = AnalyzeFactor(MinimumDegreeOrder(H.cols(), H.places()), H.places());
-    if (structure_.Operations() > kWorthDissecting) {
+    const double ends = H.cols() + 2.0 * H.block_count();
+    if (kDim * kDim * kDim * structure_.Operations() > kWorthDissecting * ends) {
       SymbolicFactor other = AnalyzeFactor(NestedDissectionOrder(H.cols(), H.places()), H.places());
       if (other.Operations() < structure_.Operations()) structure_ = std::move(other);
     }
@@ -120,12 +122,13 @@ void SparseCholesky<kDim>::PlaceMemory() {
     stack_top += PaddedArea(below, below);
     stack_size = std::max(stack_size, stack_top);
   }
-  // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows.
-  values_.assign(panel_start_.back() + kRowAlignment, 0.0);
-  front_.assign(front_size + kRowAlignment, 0.0);
-  updates_.assign(stack_size, 0.0);
-  solve_work_.assign(kMostLanes * largest, 0.0);
-  smallest_pivots_.assign(Index(kDim) * structure_.order.size(), 0.0);
+  // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows. All of
+  // it is written before it counts, so what a smaller matrix has left there may stay.
+  values_.resize(panel_start_.back() + kRowAlignment);
+  front_.resize(front_size + kRowAlignment);
+  updates_.resize(stack_size);
+  solve_work_.resize(kMostLanes * largest);
+  smallest_pivots_.resize(Index(kDim) * structure_.order.size());
 }
 
 template <int kDim>
