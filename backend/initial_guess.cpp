@@ -154,19 +154,11 @@ void PlaceLandmarks(PoseGraph<Pose>* graph) {
   }
 }
 
-/// The W >= 0 with which the Frobenius norm |(R_error - I) W^(1/2)|^2 is e^T Omega e for the
-/// rotational part of a constraint's error: to second order in 2D, and exactly in 3D as long as no
-/// eigenvalue of the information exceeds the sum of the two others.
-Eigen::Matrix2d ChordalWeight(const Eigen::Matrix3d& information) {
-  return 0.5 * information(2, 2) * Eigen::Matrix2d::Identity();
-}
-
-Eigen::Matrix3d ChordalWeight(const Eigen::Matrix<double, 6, 6>& information) {
-  const Eigen::Matrix3d omega = information.bottomRightCorner<3, 3>();
-  const Eigen::Matrix3d weight = omega.trace() / 8.0 * Eigen::Matrix3d::Identity() - omega / 4.0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(weight);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         solver.eigenvectors().transpose();
+/// Of a constraint's rotation, one number: with more, matrices that are no rotations become cheap.
+template <typename Pose>
+double RotationWeight(const Constraint<Pose>& constraint) {
+  constexpr int kTurns = Pose::kDof - kDim<Pose>;
+  return constraint.information.diagonal().template tail<kTurns>().mean();
 }
 
 /// The rotation nearest to a matrix in the Frobenius norm.
@@ -234,13 +226,13 @@ bool SolveRotations(const SpanningTree& tree, PoseGraph<Pose>* graph) {
   }
   LeastSquares<kSize> system(count, kSize);
   for (const Constraint<Pose>& constraint : graph->constraints) {
-    const Matrix<Pose> R = constraint.T_from_to.rotation();
-    const Matrix<Pose> weight = ChordalWeight(constraint.information);
-    const Matrix<Pose> product = R * weight;
+    const double weight = RotationWeight(constraint);
+    const Matrix<Pose> product = weight * constraint.T_from_to.rotation();
+    const Matrix<Pose> square = weight * Matrix<Pose>::Identity();
     const int from = variable_of[Index(constraint.from)];
     const int to = variable_of[Index(constraint.to)];
-    system.AddSquare(from, product * R.transpose());
-    system.AddSquare(to, weight);
+    system.AddSquare(from, square);
+    system.AddSquare(to, square);
     system.AddProduct(from, to, -product);
     if (from < 0) {
       const Matrix<Pose> known = graph->poses[Index(constraint.from)].rotation();
