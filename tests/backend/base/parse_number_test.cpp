@@ -69,13 +69,19 @@ TEST(FieldCursor, SplitsAtSpacesAndTabs) {
   EXPECT_FALSE(fields.NextDecimal(&range));
 }
 
+template <typename Number, typename Bits>
+void ExpectSameBitsOf(const std::string& text) {
+  Number expected = 0;
+  const bool is_number = ParseNumber(text, &expected);
+  Number got = 0;
+  ASSERT_EQ(FieldCursor(text).NextDecimal(&got), is_number) << text;
+  ASSERT_EQ(std::bit_cast<Bits>(got), std::bit_cast<Bits>(expected)) << text;
+}
+
 // NextDecimal has a fast path; its results must be those of std::from_chars to the last bit.
 void ExpectSameBits(const std::string& text) {
-  float expected = 0.0F;
-  const bool is_number = ParseNumber(text, &expected);
-  float got = 0.0F;
-  ASSERT_EQ(FieldCursor(text).NextDecimal(&got), is_number) << text;
-  ASSERT_EQ(std::bit_cast<std::uint32_t>(got), std::bit_cast<std::uint32_t>(expected)) << text;
+  ExpectSameBitsOf<float, std::uint32_t>(text);
+  ExpectSameBitsOf<double, std::uint64_t>(text);
 }
 
 TEST(NextDecimal, AgreesWithFromCharsOnAllReadingsOfALaser) {
@@ -103,6 +109,21 @@ TEST(NextDecimal, AgreesWithFromCharsBetweenNeighbouringFloats) {
       std::snprintf(text, sizeof(text), "%.*f", decimals, middle);
       ExpectSameBits(text);
     }
+  }
+}
+
+TEST(NextDecimal, AgreesWithFromCharsOnNumbersOfAGraph) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0.0, 100.0);
+  char text[64];
+  for (int i = 0; i < 200'000; ++i) {
+    for (const char* format : {"%.6g", "%f", "%.15g", "%.17g", "%.0f"}) {
+      std::snprintf(text, sizeof(text), format, normal(random));  // NOLINT: one of these
+      ExpectSameBits(text);
+    }
+  }
+  for (const char* edge : {"-0", "-0.0", "0", "-", "-.", ".", "-.5", "5.", "--1", "-+1", "+-1"}) {
+    ExpectSameBits(edge);
   }
 }
 
