@@ -69,6 +69,10 @@ bool NormalEquations<Pose>::IsGrown(const PoseGraph<Pose>& graph,
       !begins_with(graph.observations, observation_links_)) {
     return false;
   }
+  // A landmark may have been waiting to be seen.
+  for (std::size_t i = 0; i < variable_of_landmark_.size(); ++i) {
+    if (variable_of_landmark_[i] < 0 && components_.of_landmark[i] >= 0) return false;
+  }
   // The held nodes among the known ones must be the same.
   const auto known =
       std::lower_bound(held.begin(), held.end(), static_cast<int>(variable_of_node_.size()));
