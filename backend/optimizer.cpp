@@ -1,7 +1,5 @@
 #include "backend/optimizer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "backend/base/error.h"
+#include "backend/dog_leg.h"
 
 namespace loopgrid {
 namespace {
@@ -28,10 +26,6 @@ constexpr double kSmallestScale = 1e-9;
 constexpr double kGoodModel = 0.1;
 constexpr double kSlow = 0.1;
 
-// When F falls by more than the first share of what was promised, the next step may be bolder; by
-// less than the second, it has to be more careful.
-constexpr double kTrusted = 0.75;
-constexpr double kDistrusted = 0.25;
 constexpr double kSmallestRadius = 1e-12;
 
 // Full steps on trial after one that does not lower F, and trials that may fail in a row.
@@ -42,12 +36,6 @@ constexpr int kTrials = 3;
 constexpr double kGraduation = 1.4;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
-
-void RequireAtLeast(double bound, const char* field, double value) {
-  if (std::isfinite(value) && value >= bound) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("{} is {}, expected at least {}", field, value, bound));
-}
 
 /// Levenberg-Marquardt's lambda after a step that failed, and after one that did not.
 double Stronger(double damping) { return std::max(kFirstDamping, damping * kDampingFactor); }
@@ -71,31 +59,12 @@ double LargestRobustChi2(const PoseGraph<Pose>& graph) {
   return largest;
 }
 
-/// Whether what has grown still begins as it was; bit for bit.
-template <typename Pose>
-bool BeginsWith(const std::vector<Pose>& grown, const std::vector<Pose>& start) {
-  return grown.size() >= start.size() &&
-         std::equal(start.begin(), start.end(), grown.begin(), [](const Pose& a, const Pose& b) {
-           if constexpr (requires { a.coordinates(); }) {
-             return a.coordinates() == b.coordinates();
-           } else {
-             return a == b;
-           }
-         });
+template <typename Item>
+bool BeginsWith(const std::vector<Item>& grown, const std::vector<Item>& start) {
+  return grown.size() >= start.size() && std::equal(start.begin(), start.end(), grown.begin());
 }
 
 }  // namespace
-
-void OptimizerOptions::Validate() const {
-  RequireAtLeast(0.0, "max_iterations", max_iterations);
-  RequireAtLeast(0.0, "relative_decrease", relative_decrease);
-  RequireAtLeast(0.0, "absolute_decrease", absolute_decrease);
-  RequireAtLeast(1.0, "threads", threads);
-  loss.Validate();
-  if (graduated && loss.kind != LossKind::kGemanMcClure) {
-    throw Error(ErrorCode::kUsage, "graduated is set, expected a Geman-McClure loss with it");
-  }
-}
 
 const char* ToString(Termination termination) {
   switch (termination) {
@@ -135,34 +104,25 @@ OptimizerResult Optimizer<Pose>::Optimize(PoseGraph<Pose>* graph) {
     return result;
   }
   result = options_.graduated ? MinimizeGraduated(graph) : Minimize(graph);
-  optimum_ = {result.termination == Termination::kConverged,
-              result.final_error,
-              StateOf(*graph),
-              graph->fixed,
-              graph->constraints.size(),
-              graph->observations.size()};
+  end_ = {result.termination == Termination::kConverged, result.final_error, *graph};
   return result;
 }
 
 // What has been added can lower F by no more than what it adds to it: the rest is at its minimum.
 template <typename Pose>
 bool Optimizer<Pose>::IsAtOptimum(const PoseGraph<Pose>& graph, double* error) const {
-  if (!optimum_.is_minimum || graph.fixed != optimum_.fixed ||
-      graph.constraints.size() < optimum_.constraints ||
-      graph.observations.size() < optimum_.observations ||
-      !BeginsWith(graph.poses, optimum_.state.poses) ||
-      !BeginsWith(graph.landmarks, optimum_.state.landmarks)) {
+  const PoseGraph<Pose>& known = end_.graph;
+  if (!end_.is_minimum || graph.fixed != known.fixed || !BeginsWith(graph.poses, known.poses) ||
+      !BeginsWith(graph.landmarks, known.landmarks) ||
+      !BeginsWith(graph.constraints, known.constraints) ||
+      !BeginsWith(graph.observations, known.observations)) {
     return false;
   }
-  const std::span<const Constraint<Pose>> constraints(graph.constraints);
-  const std::span<const LandmarkObservation<Pose>> observations(graph.observations);
-  const double old_error = TotalError(graph, constraints.first(optimum_.constraints),
-                                      observations.first(optimum_.observations), objective_);
-  if (old_error != optimum_.error) return false;
-  const double new_error = TotalError(graph, constraints.subspan(optimum_.constraints),
-                                      observations.subspan(optimum_.observations), objective_);
-  *error = old_error + new_error;
-  return new_error <= std::max(options_.absolute_decrease, options_.relative_decrease * *error);
+  const double added = TotalError<Pose>(
+      graph, std::span(graph.constraints).subspan(known.constraints.size()),
+      std::span(graph.observations).subspan(known.observations.size()), objective_);
+  *error = end_.error + added;
+  return added <= std::max(options_.absolute_decrease, options_.relative_decrease * *error);
 }
 
 template <typename Pose>
@@ -200,6 +160,7 @@ OptimizerResult Optimizer<Pose>::MinimizeGraduated(PoseGraph<Pose>* graph) {
   result.initial_error = initial_error;
   if (result.final_error > initial_error) {
     Restore(start, graph);
+    factor_is_current_ = false;
     result.final_error = initial_error;
     result.termination = Termination::kDiverged;
   }
@@ -271,16 +232,14 @@ Eigen::VectorXd Optimizer<Pose>::Scale() const {
 
 template <typename Pose>
 std::optional<Marginals<Pose>> Optimizer<Pose>::ComputeMarginals(const PoseGraph<Pose>& graph) {
-  const bool is_here = optimum_.state.poses.size() == graph.poses.size() &&
-                       optimum_.constraints == graph.constraints.size() &&
-                       optimum_.observations == graph.observations.size() &&
-                       BeginsWith(graph.poses, optimum_.state.poses) &&
-                       BeginsWith(graph.landmarks, optimum_.state.landmarks);
-  if (!is_here || !factor_is_current_ || options_.parametrization != Parametrization::kManifold) {
+  if (!factor_is_current_ || options_.parametrization != Parametrization::kManifold ||
+      graph != end_.graph) {
     loopgrid::Validate(graph);
     SetStructure(graph);
     equations_.Linearize(graph, {options_.loss, Parametrization::kManifold}, &workers_);
-    if (!Factorize(0.0)) return std::nullopt;
+    const bool is_definite = Factorize(0.0);
+    factor_is_current_ = false;
+    if (!is_definite) return std::nullopt;
   }
   return Marginals<Pose>(graph.poses, equations_, factor_);
 }
@@ -363,7 +322,7 @@ bool Optimizer<Pose>::LookAhead(PoseGraph<Pose>* graph, OptimizerResult* result)
   if (failed_trials_ >= kTrials) return false;
   const State start = StateOf(*graph);
   OptimizerResult ahead = *result;
-  for (int step = 0; step < kLookAhead; ++step) {
+  for (int step = 0; step < kLookAhead && ahead.iterations < options_.max_iterations; ++step) {
     const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
     last_step_ = dx.norm();
     Move(graph, dx);
@@ -402,8 +361,7 @@ typename Optimizer<Pose>::Trial Optimizer<Pose>::TryFactor(PoseGraph<Pose>* grap
   return trial;
 }
 
-// Powell 1970, in the coordinates in which the Hessian's diagonal is 1: from the Cauchy point, the
-// minimum along the steepest descent, towards the Gauss-Newton step.
+// In the coordinates in which the Hessian's diagonal is 1.
 template <typename Pose>
 std::optional<Termination> Optimizer<Pose>::DogLegStep(PoseGraph<Pose>* graph,
                                                        OptimizerResult* result) {
@@ -414,41 +372,21 @@ std::optional<Termination> Optimizer<Pose>::DogLegStep(PoseGraph<Pose>* graph,
   }
   const auto& H = equations_.hessian();
   const Eigen::VectorXd& b = equations_.gradient();
-  const Eigen::VectorXd scale = Scale();
-  const auto norm = [&scale](const Eigen::VectorXd& v) {
-    return std::sqrt(v.dot(scale.cwiseProduct(v)));
-  };
   const Eigen::VectorXd newton = factor_.Solve(-b);
   if (-b.dot(newton) <= Negligible(*result)) return Termination::kConverged;
+  const Eigen::VectorXd scale = Scale();
   Eigen::VectorXd cauchy = -b.cwiseQuotient(scale);
-  cauchy *= -b.dot(cauchy) / cauchy.dot(H * cauchy);
+  cauchy *= -b.dot(cauchy) / cauchy.dot(H * cauchy);  // the minimum along the steepest descent
+  const DogLeg path(cauchy, newton, scale);
 
   while (radius_ > kSmallestRadius) {
-    Eigen::VectorXd dx = newton;
-    if (norm(newton) > radius_) {
-      if (norm(cauchy) >= radius_) {
-        dx = radius_ / norm(cauchy) * cauchy;
-      } else {
-        const Eigen::VectorXd leg = newton - cauchy;
-        // The root of |cauchy + t leg| = radius in (0, 1].
-        const double a = leg.dot(scale.cwiseProduct(leg));
-        const double half_b = cauchy.dot(scale.cwiseProduct(leg));
-        const double c = radius_ * radius_ - norm(cauchy) * norm(cauchy);
-        const double root = std::sqrt(half_b * half_b + a * c);
-        const double t = half_b > 0.0 ? c / (half_b + root) : (root - half_b) / a;
-        dx = cauchy + t * leg;
-      }
-    }
+    const Eigen::VectorXd dx = path.PointWithin(radius_);
     const double promised = -2.0 * b.dot(dx) - dx.dot(H * dx);
     const Trial trial = TryStep(graph, dx, promised, result);
     if (trial == Trial::kNegligible) return Termination::kStalled;
-    const double length = norm(dx);
-    if (trial == Trial::kRejected) {
-      radius_ = kDistrusted * length;
-      continue;
-    }
-    if (last_gain_ > kTrusted) radius_ = std::max(radius_, 3.0 * length);
-    if (last_gain_ < kDistrusted) radius_ = 0.5 * length;
+    const double gain = trial == Trial::kTaken ? last_gain_ : -kInfinity;
+    radius_ = NextRadius(radius_, path.Length(dx), gain);
+    if (trial == Trial::kRejected) continue;
     damping = Weaker(damping);
     return std::nullopt;
   }

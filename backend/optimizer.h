@@ -9,44 +9,11 @@
 #include "backend/base/worker_pool.h"
 #include "backend/marginals.h"
 #include "backend/normal_equations.h"
-#include "backend/parametrization.h"
+#include "backend/optimizer_options.h"
 #include "backend/pose_graph.h"
-#include "backend/robust_loss.h"
 #include "backend/sparse_cholesky.h"
 
 namespace loopgrid {
-
-/// How a step is made of the linearised problem H dx = -b.
-enum class Method {
-  /// Gauss-Newton steps as long as they lower F, at once or within the next few steps; damped ones
-  /// (Marquardt 1963) where they do not.
-  kLevenbergMarquardt,
-  /// Full steps, whether they lower F or not: Algorithms 1 and 2 of the tutorial to the letter.
-  kGaussNewton,
-  /// Powell's dog leg: the Gauss-Newton step, or on the way to it from that of steepest descent as
-  /// far as the model has proved right. One factorisation a step.
-  kDogLeg,
-};
-
-struct OptimizerOptions {
-  Method method = Method::kLevenbergMarquardt;
-  Parametrization parametrization = Parametrization::kManifold;
-  int max_iterations = 100;  ///< steps
-  /// Stop when the next step promises to lower F by less than this share of F ...
-  double relative_decrease = 1e-8;
-  /// ... or by less than this (F counts squared standard deviations).
-  double absolute_decrease = 1e-9;
-  /// Of the constraints and observations marked robust.
-  RobustLoss loss;
-  /// Graduated non-convexity (Yang et al. 2020), for Geman-McClure losses: begins with a width at
-  /// which nothing is an outlier and narrows it, so that the start matters less.
-  bool graduated = false;
-  int threads = 1;     ///< to linearise large graphs; the result does not depend on it
-  bool trace = false;  ///< fill in OptimizerResult::trace
-
-  /// Throws Error (kUsage) naming the field, its value and its bound.
-  void Validate() const;
-};
 
 enum class Termination {
   kConverged,      ///< the next step would lower F by a negligible amount
@@ -107,14 +74,11 @@ class Optimizer {
     std::vector<Pose> poses;
     std::vector<typename Pose::Point> landmarks;
   };
-  /// The end of a call: what has to be the same for it to be a minimum still.
-  struct Optimum {
+  /// The end of a call.
+  struct End {
     bool is_minimum = false;
     double error = 0.0;
-    State state;
-    std::vector<int> fixed;
-    std::size_t constraints = 0;
-    std::size_t observations = 0;
+    PoseGraph<Pose> graph;
   };
 
   OptimizerResult Minimize(PoseGraph<Pose>* graph);
@@ -150,7 +114,7 @@ class Optimizer {
   NormalEquations<Pose> equations_;
   SparseCholesky<kDof> factor_;
   Eigen::VectorXd damping_;         // added to the Hessian's diagonal; empty: nothing
-  bool factor_is_current_ = false;  // factor_ is that of the undamped Hessian
+  bool factor_is_current_ = false;  // factor_ is of the undamped Hessian of the last call's graph
   bool factor_fits_ = false;        // factor_ is of the last point, and good enough for this one
   double last_promised_ = 0.0;      // decrease of F, by the last step
   double last_gain_ = 0.0;          // the share of that which came true
@@ -159,7 +123,7 @@ class Optimizer {
   double radius_ = 0.0;             // of the dog leg's trust region
   State before_;                    // the step being tried
   std::chrono::steady_clock::time_point start_;  // of the call
-  Optimum optimum_;                              // where the last call ended
+  End end_;                                      // of the last call
 };
 
 extern template class Optimizer<SE2>;

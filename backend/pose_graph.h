@@ -19,6 +19,8 @@ struct Constraint {
   /// Order of Pose::Tangent, in `to`'s measured frame.
   Information information = Information::Identity();
   bool robust = false;  ///< may be wrong: the optimiser's robust loss applies to it
+
+  bool operator==(const Constraint&) const = default;
 };
 
 /// A landmark as a node has seen it: its measured position with the information matrix.
@@ -32,6 +34,8 @@ struct LandmarkObservation {
   Point p_node = Point::Zero();  ///< measured position of the landmark in the node's frame
   Information information = Information::Identity();
   bool robust = false;  ///< see Constraint
+
+  bool operator==(const LandmarkObservation&) const = default;
 };
 
 /// The graph of the tutorial: poses and point landmarks are nodes, constraints and observations are
@@ -44,6 +48,8 @@ struct PoseGraph {
 
   std::vector<typename Pose::Point> landmarks;  ///< p_map
   std::vector<LandmarkObservation<Pose>> observations;
+
+  bool operator==(const PoseGraph&) const = default;
 };
 
 /// Throws Error (kInput) naming the first pose, landmark, constraint or observation that is not

@@ -33,6 +33,7 @@ class SE2 {
   /// (x, y, theta): the coordinates, not the logarithm.
   Eigen::Vector3d coordinates() const { return {x_, y_, theta_}; }
   bool IsFinite() const { return coordinates().allFinite(); }
+  bool operator==(const SE2&) const = default;
 
   SE2 Inverse() const { return SE2(-c_ * x_ - s_ * y_, s_ * x_ - c_ * y_, -theta_); }
 

@@ -46,6 +46,7 @@ class SE3 {
   /// (x, y, z, qx, qy, qz): the coordinates, not the logarithm.
   Tangent coordinates() const { return (Tangent() << translation_, rotation_.vec()).finished(); }
   bool IsFinite() const { return translation_.allFinite() && rotation_.coeffs().allFinite(); }
+  bool operator==(const SE3&) const = default;
 
   SE3 Inverse() const {
     const Eigen::Quaterniond inverse = rotation_.conjugate();
