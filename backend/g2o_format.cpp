@@ -87,9 +87,10 @@ void ReadObservation(GraphLine* line, GraphBuilder<Pose>* builder) {
   observation.p_node = T_node_sensor * line->Numbers<kPointSize<Pose>>();
   const auto information = line->UpperTriangle<kPointSize<Pose>>();
   line->End();
-  line->RequireInformation(information);
+  if (!observation.p_node.allFinite()) throw line->ErrorHere("the landmark is too far away");
   const auto R = T_node_sensor.rotation();
   observation.information = R * information * R.transpose();
+  line->RequireInformation(observation.information);
   builder->AddObservation({node, landmark, line->number()}, observation);
 }
 

@@ -23,14 +23,14 @@ void GraphBuilder<Pose>::AddVertex(const VertexMention& name, const Vertex& vert
 
 template <typename Pose>
 void GraphBuilder<Pose>::AddNode(const VertexMention& name, const Pose& pose) {
-  AddVertex(name, {false, static_cast<int>(file_.graph.poses.size())});
+  AddVertex(name, {Kind::kNode, static_cast<int>(file_.graph.poses.size())});
   file_.ids.nodes.push_back(name.id);
   file_.graph.poses.push_back(pose);
 }
 
 template <typename Pose>
 void GraphBuilder<Pose>::AddLandmark(const VertexMention& name, const Point& p_map) {
-  AddVertex(name, {true, static_cast<int>(file_.graph.landmarks.size())});
+  AddVertex(name, {Kind::kLandmark, static_cast<int>(file_.graph.landmarks.size())});
   file_.ids.landmarks.push_back(name.id);
   file_.graph.landmarks.push_back(p_map);
 }
@@ -72,19 +72,19 @@ GraphFile<Pose> GraphBuilder<Pose>::Finish(const std::vector<VertexMention>& fix
   if (has_edges_only) AddMentionedVertices();
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     const EdgeEnds& ends = constraints_[k];
-    graph.constraints[k].from = Find({ends.from, ends.line}, false);
-    graph.constraints[k].to = Find({ends.to, ends.line}, false);
+    graph.constraints[k].from = Find({ends.from, ends.line}, Kind::kNode);
+    graph.constraints[k].to = Find({ends.to, ends.line}, Kind::kNode);
   }
   for (std::size_t k = 0; k < observations_.size(); ++k) {
     const EdgeEnds& ends = observations_[k];
-    graph.observations[k].node = Find({ends.from, ends.line}, false);
-    graph.observations[k].landmark = Find({ends.to, ends.line}, true);
+    graph.observations[k].node = Find({ends.from, ends.line}, Kind::kNode);
+    graph.observations[k].landmark = Find({ends.to, ends.line}, Kind::kLandmark);
   }
-  for (const VertexMention& name : fixed) graph.fixed.push_back(Find(name, false));
+  for (const VertexMention& name : fixed) graph.fixed.push_back(Find(name, Kind::kNode));
   std::sort(graph.fixed.begin(), graph.fixed.end());
   graph.fixed.erase(std::unique(graph.fixed.begin(), graph.fixed.end()), graph.fixed.end());
   if (has_edges_only) {
-    SetSpanningTreeGuess(&graph);
+    GuessVertices();
     notes->guessed_nodes += static_cast<std::int64_t>(graph.poses.size());
   }
   return std::move(file_);
@@ -106,14 +106,24 @@ void GraphBuilder<Pose>::AddMentionedVertices() {
 }
 
 template <typename Pose>
-int GraphBuilder<Pose>::Find(const VertexMention& name, bool landmark) const {
+void GraphBuilder<Pose>::GuessVertices() {
+  SetSpanningTreeGuess(&file_.graph);
+  bool is_finite = true;
+  for (const Pose& pose : file_.graph.poses) is_finite &= pose.IsFinite();
+  for (const Point& landmark : file_.graph.landmarks) is_finite &= landmark.allFinite();
+  if (!is_finite)
+    throw Error(ErrorCode::kInput, path_ + ": the edges are too long to be put together");
+}
+
+template <typename Pose>
+int GraphBuilder<Pose>::Find(const VertexMention& name, Kind kind) const {
   const auto found = vertices_.find(name.id);
   if (found == vertices_.end()) {
     throw ErrorAt(name.line, fmt::format("vertex {} is not in the file", name.id));
   }
-  if (found->second.is_landmark == landmark) return found->second.index;
+  if (found->second.kind == kind) return found->second.index;
   const char* found_and_expected =
-      landmark ? "a pose, expected a landmark" : "a landmark, expected a pose";
+      kind == Kind::kLandmark ? "a pose, expected a landmark" : "a landmark, expected a pose";
   throw ErrorAt(name.line, fmt::format("vertex {} is {}", name.id, found_and_expected));
 }
 

@@ -47,15 +47,17 @@ class GraphBuilder {
   GraphFile<Pose> Finish(const std::vector<VertexMention>& fixed, GraphNotes* notes);
 
  private:
+  enum class Kind { kNode, kLandmark };
   struct Vertex {
-    bool is_landmark = false;
+    Kind kind = Kind::kNode;
     int index = 0;
   };
 
   Error ErrorAt(std::int64_t line, const std::string& problem) const;
   void AddVertex(const VertexMention& name, const Vertex& vertex);
   void AddMentionedVertices();
-  int Find(const VertexMention& name, bool landmark) const;
+  int Find(const VertexMention& name, Kind kind) const;
+  void GuessVertices();
 
   std::string path_;
   GraphFile<Pose> file_;

@@ -27,9 +27,9 @@ class GraphNames {
   }
   template <typename Index>
   std::int64_t landmark(Index index) const {
-    if (ids_.landmarks.empty())
-      return static_cast<std::int64_t>(nodes_) + static_cast<std::int64_t>(index);
-    return ids_.landmarks[static_cast<std::size_t>(index)];
+    const auto position = static_cast<std::size_t>(index);
+    if (ids_.landmarks.empty()) return static_cast<std::int64_t>(nodes_ + position);
+    return ids_.landmarks[position];
   }
 
  private:

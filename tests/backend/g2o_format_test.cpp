@@ -81,6 +81,10 @@ TEST(G2oFormat, WrongSensorsAreRefusedWithTheirLine) {
        {"EDGE_SE3_TRACKXYZ 0 1 4 1 2 3 1 0 0 1 0 -1", "semi-definite"},
        {"EDGE_SE3_TRACKXYZ 0 1 4 1 2 3 1 0 0 1 0", "node landmark sensor x y z"},
        {"PARAMS_SE3OFFSET 4 0 0 0 0 0 0 1", "parameter 4 for the second time"}});
+  ExpectLinesRefused(
+      "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nPARAMS_SE3OFFSET 4 1e308 0 0 0 0 0 1\n"
+      "VERTEX_TRACKXYZ 1 8 21 33\n",
+      {{"EDGE_SE3_TRACKXYZ 0 1 4 1e308 0 0 1 0 0 1 0 1", "too far away"}});
 }
 
 TEST(G2oFormat, NormalisesQuaternionsWithANote) {

@@ -81,6 +81,12 @@ TEST(GraphBuilder, NoNodesAreGuessedWhereThereAreVertices) {
               HasSubstr("2: vertex 0 is not in the file"));
 }
 
+TEST(GraphBuilder, RefusesAGuessBeyondTheRangeOfNumbers) {
+  EXPECT_THAT(test_support::Refusal("EDGE_SE2 0 1 1e308 0 0 1 0 0 1 0 1\n"
+                                    "EDGE_SE2 1 2 1e308 0 0 1 0 0 1 0 1\n"),
+              HasSubstr("too long to be put together"));
+}
+
 TEST(GraphBuilder, LandmarksWithoutVerticesMustNotBeNodesToo) {
   EXPECT_THAT(test_support::Refusal("EDGE_SE2 0 1 0 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 0 1 0 0 1 0 1\n"),
               HasSubstr("2: vertex 1 is a pose, expected a landmark"));

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <string>
 
+#include "backend/base/gzip.h"
 #include "backend/base/line_reader.h"
 #include "frontend/log/log_reader.h"
-#include "tests/support/gzip.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid {
@@ -55,7 +55,7 @@ BENCHMARK(BM_ReadPlainLog)->Unit(benchmark::kMillisecond);
 
 void BM_ReadGzippedLog(benchmark::State& state) {
   const std::string log = SickLog(2'000);
-  ReadLog(state, log, test_support::Gzip(log));
+  ReadLog(state, log, Gzip(log));
 }
 BENCHMARK(BM_ReadGzippedLog)->Unit(benchmark::kMillisecond);
 

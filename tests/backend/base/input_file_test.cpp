@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "backend/base/error.h"
-#include "tests/support/gzip.h"
+#include "backend/base/gzip.h"
 #include "tests/support/temporary_directory.h"
 
 namespace loopgrid {
@@ -55,12 +55,12 @@ TEST_F(InputFileTest, GivesPlainBytesAsTheyAre) {
 
 TEST_F(InputFileTest, UnpacksGzipWhateverTheName) {
   const std::string bytes = RandomBytes(300'000, 2);
-  InputFile file(directory_.Write("log.txt", test_support::Gzip(bytes)));
+  InputFile file(directory_.Write("log.txt", Gzip(bytes)));
   EXPECT_EQ(ReadAll(&file, 777), bytes);
 }
 
 TEST_F(InputFileTest, UnpacksConcatenatedGzipMembers) {
-  InputFile file(directory_.Write("two", test_support::Gzip("one") + test_support::Gzip("two")));
+  InputFile file(directory_.Write("two", Gzip("one") + Gzip("two")));
   EXPECT_EQ(ReadAll(&file, 100), "onetwo");
 }
 
@@ -81,7 +81,7 @@ TEST_F(InputFileTest, PeekGivesWhatThereIs) {
 }
 
 TEST_F(InputFileTest, ProgressGoesFromZeroToOne) {
-  const std::string packed = test_support::Gzip(RandomBytes(2'000'000, 4));
+  const std::string packed = Gzip(RandomBytes(2'000'000, 4));
   InputFile file(directory_.Write("file.gz", packed));
   double last = file.progress();
   EXPECT_EQ(last, 0.0);
@@ -131,7 +131,7 @@ TEST_F(InputFileTest, SaysWhenReadingFails) {
 
 TEST_F(InputFileTest, GivesWhatComesBeforeACutInGzipDataAndThenSaysSo) {
   const std::string bytes = RandomBytes(200'000, 5);
-  const std::string packed = test_support::Gzip(bytes);
+  const std::string packed = Gzip(bytes);
   InputFile file(directory_.Write("cut.gz", packed.substr(0, packed.size() / 2)));
   std::string piece(1'000, '\0');
   std::string all;
@@ -147,7 +147,7 @@ TEST_F(InputFileTest, GivesWhatComesBeforeACutInGzipDataAndThenSaysSo) {
 }
 
 TEST_F(InputFileTest, SaysWhenGzipDataAreCorrupt) {
-  std::string packed = test_support::Gzip(RandomBytes(200'000, 6));
+  std::string packed = Gzip(RandomBytes(200'000, 6));
   for (std::size_t i = packed.size() / 2; i < packed.size() / 2 + 64; ++i) packed[i] = '\xff';
   InputFile file(directory_.Write("corrupt.gz", packed));
   EXPECT_THAT([&] { ReadAll(&file, 4096); },

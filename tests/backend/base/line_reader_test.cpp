@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/gzip.h"
+#include "backend/base/gzip.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid {
 namespace {
 
-using test_support::Gzip;
 using test_support::MemoryFile;
 using ::testing::ElementsAre;
 

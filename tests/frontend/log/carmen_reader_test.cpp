@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "backend/base/gzip.h"
 #include "tests/frontend/log/log_testing.h"
-#include "tests/support/gzip.h"
 
 namespace loopgrid {
 namespace {
 
-using test_support::Gzip;
 using test_support::MemoryFile;
 using test_support::ReadWholeLog;
 using test_support::ReadWholeLogFrom;

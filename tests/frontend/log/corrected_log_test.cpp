@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "backend/base/error.h"
+#include "backend/base/gzip.h"
 #include "frontend/log/carmen_line.h"
 #include "tests/frontend/log/log_testing.h"
-#include "tests/support/gzip.h"
 #include "tests/support/temporary_directory.h"
 
 namespace loopgrid {
@@ -67,7 +67,7 @@ TEST_F(CorrectedLogTest, ReplacesTheLasersPoseAndNothingElse) {
 }
 
 TEST_F(CorrectedLogTest, ReadsGzipAndCrLfAndWritesPlainLines) {
-  Correct(test_support::Gzip("# c\r\nFLASER 1 2 0 0 0 0 0 0 5 nohost 5\r\n"), {SE2(1.0, 2.0, 0.5)});
+  Correct(Gzip("# c\r\nFLASER 1 2 0 0 0 0 0 0 5 nohost 5\r\n"), {SE2(1.0, 2.0, 0.5)});
   EXPECT_EQ(ReadFile(Output()), "# c\nFLASER 1 2 1.000000 2.000000 0.500000 0 0 0 5 nohost 5\n");
 }
 
@@ -88,7 +88,7 @@ TEST_F(CorrectedLogTest, EndsWhereGzipDataAreCut) {
   for (int i = 0; i < 2'000; ++i) {
     content += fmt::format("FLASER 1 {} 0 0 0 0 0 0 {} nohost 5\n", 1 + i % 7, i);
   }
-  const std::string packed = test_support::Gzip(content);
+  const std::string packed = Gzip(content);
   const std::string half = packed.substr(0, packed.size() / 2);
   const auto log = test_support::ReadWholeLogFrom(half);
   ASSERT_GT(log.observations.size(), 100U);

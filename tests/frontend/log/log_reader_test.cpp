@@ -6,8 +6,8 @@
 #include <string>
 
 #include "backend/base/error.h"
+#include "backend/base/gzip.h"
 #include "tests/frontend/log/log_testing.h"
-#include "tests/support/gzip.h"
 #include "tests/support/temporary_directory.h"
 
 namespace loopgrid {
@@ -28,7 +28,7 @@ TEST(OpenLog, RefusesAMissingFileAndADirectory) {
 }
 
 TEST(OpenLog, RefusesAnEmptyFileAlsoIfItIsGzipped) {
-  for (const std::string& content : {std::string(), test_support::Gzip("")}) {
+  for (const std::string& content : {std::string(), Gzip("")}) {
     const MemoryFile file(content);
     EXPECT_THAT([&] { OpenLog(file.path()); }, ThrowsMessage<Error>(file.path() + ": is empty"));
   }

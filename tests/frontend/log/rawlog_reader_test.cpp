@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "backend/base/error.h"
+#include "backend/base/gzip.h"
 #include "tests/frontend/log/log_testing.h"
-#include "tests/support/gzip.h"
 #include "tests/support/recordings.h"
 
 namespace loopgrid {
@@ -375,7 +375,7 @@ TEST(RawlogReader, CutGzipDataGiveWhatComesBefore) {
     bytes.AddMovement(CPose2D(0.01 * i, 0.0, 0.1))
         .AddFrame({Scan(std::vector<float>(100, 0.1F * static_cast<float>(i)), i)});
   }
-  const std::string packed = test_support::Gzip(bytes.str());
+  const std::string packed = Gzip(bytes.str());
   EXPECT_THAT(ReadWholeLogFrom(packed).observations, SizeIs(300));
   const MemoryFile file(packed.substr(0, packed.size() / 2));
   const WholeLog log = ReadWholeLog(file.path());
