@@ -163,7 +163,7 @@ const char* ToString(OptimalityCertificate::Kind kind) {
     case Kind::kGlobal:
       return "global optimum";
     case Kind::kBounded:
-      return "close to the global optimum";
+      return "not far above the global optimum";
     case Kind::kUnknown:
       break;
   }

@@ -1,8 +1,9 @@
 #include "backend/initial_guess.h"
 
 #include <Eigen/Core>
-#include <Eigen/Dense>
-#include <algorithm>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <queue>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "backend/constraint_error.h"
@@ -198,12 +200,12 @@ class LeastSquares {
     if (variable >= 0) b_.middleRows<kSize>(kSize * variable) += rows;
   }
 
-  std::optional<Eigen::MatrixXd> Solve() const {
+  /// By a factor whose elimination order may be of use.
+  std::optional<Eigen::MatrixXd> Solve(SparseCholesky<kSize>* factor) const {
     if (H_.cols() == 0) return b_;
-    SparseCholesky<kSize> factor;
-    factor.Analyze(H_);
-    if (!factor.Factorize(H_)) return std::nullopt;
-    Eigen::MatrixXd x = factor.Solve(b_);
+    factor->Analyze(H_);
+    if (!factor->Factorize(H_)) return std::nullopt;
+    Eigen::MatrixXd x = factor->Solve(b_);
     if (!x.allFinite()) return std::nullopt;
     return x;
   }
@@ -217,7 +219,8 @@ class LeastSquares {
 /// is made small, weighted. The rows of the matrices do not mix: the unknowns are the transposed
 /// rotations, whose columns are so many right-hand sides of one system.
 template <typename Pose>
-bool SolveRotations(const SpanningTree& tree, PoseGraph<Pose>* graph) {
+bool SolveRotations(const SpanningTree& tree, SparseCholesky<kDim<Pose>>* factor,
+                    PoseGraph<Pose>* graph) {
   constexpr int kSize = kDim<Pose>;
   std::vector<int> variable_of(graph->poses.size(), -1);
   int count = 0;
@@ -243,7 +246,7 @@ bool SolveRotations(const SpanningTree& tree, PoseGraph<Pose>* graph) {
       system.AddRight(from, product * known.transpose());
     }
   }
-  const std::optional<Eigen::MatrixXd> rows = system.Solve();
+  const std::optional<Eigen::MatrixXd> rows = system.Solve(factor);
   if (!rows) return false;
   for (std::size_t node = 0; node < variable_of.size(); ++node) {
     if (variable_of[node] < 0) continue;
@@ -258,7 +261,7 @@ bool SolveRotations(const SpanningTree& tree, PoseGraph<Pose>* graph) {
 /// Minimises F over the positions of the nodes that are not held and of the landmarks: one step of
 /// Gauss-Newton, since errors are linear in them.
 template <typename Pose>
-bool SolvePositions(PoseGraph<Pose>* graph) {
+bool SolvePositions(SparseCholesky<kDim<Pose>>* factor, PoseGraph<Pose>* graph) {
   constexpr int kSize = kDim<Pose>;
   const Components components = ConnectedComponents(*graph);
   int count = 0;
@@ -298,7 +301,7 @@ bool SolvePositions(PoseGraph<Pose>* graph) {
     add(variable_of[Index(observation.node)], variable_of_landmark[Index(observation.landmark)],
         node.rotation().transpose(), observation.information, observation.information * error);
   }
-  const std::optional<Eigen::MatrixXd> moves = system.Solve();
+  const std::optional<Eigen::MatrixXd> moves = system.Solve(factor);
   if (!moves) return false;
   const auto move = [&moves](int variable) {
     return moves->template middleRows<kSize>(kSize * variable);
@@ -335,7 +338,9 @@ template <typename Pose>
 bool SetChordalGuess(PoseGraph<Pose>* graph) {
   Validate(*graph);
   std::vector<Pose> poses = graph->poses;
-  if (SolveRotations(TreeBuilder<Pose>(*graph).Build(), graph) && SolvePositions(graph)) {
+  SparseCholesky<kDim<Pose>> factor;
+  if (SolveRotations(TreeBuilder<Pose>(*graph).Build(), &factor, graph) &&
+      SolvePositions(&factor, graph)) {
     return true;
   }
   graph->poses = std::move(poses);
