@@ -26,14 +26,6 @@ bool IsPositiveSemidefinite(const Eigen::Matrix<double, kSize, kSize>& matrix) {
 
 }  // namespace
 
-std::string Quoted(std::string_view field) {
-  constexpr std::size_t kLongest = 40;
-  std::string text(field.substr(0, kLongest));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return "'" + text + "'";
-}
-
 std::int64_t GraphLine::Id() {
   std::int64_t id = 0;
   const std::string_view field = fields_.Next();

@@ -12,9 +12,6 @@
 
 namespace loopgrid {
 
-/// A field as a message shows it: short, and on one line whatever bytes it holds.
-std::string Quoted(std::string_view field);
-
 /// A line of a graph file, field after field. What is wrong with it is an Error (kInput) that
 /// begins `file:line: `.
 class GraphLine {

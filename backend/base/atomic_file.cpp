@@ -101,15 +101,21 @@ void AtomicFile::Flush() {
   buffer_.clear();
 }
 
-void AtomicFile::Commit() {
+void AtomicFile::Finish() {
   Flush();
-  if (temporary_.empty()) {  // devices and pipes cannot be synchronised
+  // Devices and pipes cannot be synchronised.
+  if (!temporary_.empty() && fsync(descriptor_) != 0) Fail("cannot write");
+  finished_ = true;
+}
+
+void AtomicFile::Commit() {
+  if (!finished_) Finish();
+  if (temporary_.empty()) {
     const int status = close(descriptor_);
     descriptor_ = -1;
     if (status != 0) Fail("cannot write");
     return;
   }
-  if (fsync(descriptor_) != 0) Fail("cannot write");
   if (rename(temporary_.c_str(), target_.c_str()) != 0) Fail("cannot move into place");
   close(descriptor_);
   descriptor_ = -1;

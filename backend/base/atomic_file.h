@@ -21,7 +21,11 @@ class AtomicFile {
 
   void Append(std::string_view bytes);
 
-  /// Writes everything through to the disk and gives the file its name. Nothing may follow.
+  /// Writes everything through to the disk, after which little is left that can fail. Only Commit()
+  /// may follow.
+  void Finish();
+
+  /// Finishes, if that is not done, and gives the file its name. Nothing may follow.
   void Commit();
 
   const std::string& path() const { return path_; }
@@ -39,6 +43,7 @@ class AtomicFile {
   std::string target_;     // what the path means once symbolic links are followed
   std::string temporary_;  // empty when writing directly
   int descriptor_ = -1;
+  bool finished_ = false;
   int slot_ = -1;  // in the list that RemoveTemporaries() walks
   std::string buffer_;
 };

@@ -1,5 +1,6 @@
 #include "backend/base/parse_number.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -63,6 +64,14 @@ bool FieldCursor::NextDecimal(float* value) {
   }
   position_ = before;
   return Next(value);
+}
+
+std::string Quoted(std::string_view field) {
+  constexpr std::size_t kLongest = 40;
+  std::string text(field.substr(0, kLongest));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + text + "'";
 }
 
 }  // namespace loopgrid

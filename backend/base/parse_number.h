@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -24,6 +25,9 @@ bool ParseNumber(std::string_view text, Number* value) {
   *value = parsed;
   return true;
 }
+
+/// A field as a message shows it: short, and on one line whatever bytes it holds.
+std::string Quoted(std::string_view field);
 
 /// Walks over the fields of a line, which spaces and tabs separate.
 class FieldCursor {
