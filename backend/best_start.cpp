@@ -12,19 +12,6 @@
 namespace loopgrid {
 namespace {
 
-/// Equations minus unknowns: what F is on average at the optimum, if information matrices are true.
-template <typename Pose>
-double DegreesOfFreedom(const PoseGraph<Pose>& graph) {
-  constexpr int kPoint = Pose::Point::RowsAtCompileTime;
-  const Components components = ConnectedComponents(graph);
-  const auto size = [](const auto& items) { return static_cast<double>(items.size()); };
-  const double moving = size(graph.poses) - size(HeldNodes(graph, components));
-  const auto unseen = std::ranges::count(components.of_landmark, -1);
-  const double seen = size(graph.landmarks) - static_cast<double>(unseen);
-  return Pose::kDof * (size(graph.constraints) - moving) +
-         kPoint * (size(graph.observations) - seen);
-}
-
 /// Whether F is TotalChi2, of which there are certificates.
 template <typename Pose>
 bool IsSumOfSquares(const PoseGraph<Pose>& graph, const OptimizerOptions& options) {
@@ -52,7 +39,7 @@ class StartSearch {
   StartSearch(PoseGraph<Pose>* graph, Optimizer<Pose>* optimizer)
       : graph_(graph),
         optimizer_(optimizer),
-        expected_error_(DegreesOfFreedom(*graph)),
+        expected_error_(static_cast<double>(DegreesOfFreedom(*graph, ConnectedComponents(*graph)))),
         is_sum_of_squares_(IsSumOfSquares(*graph, optimizer->options())),
         own_{graph->poses, graph->landmarks} {}
 

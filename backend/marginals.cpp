@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "backend/base/error.h"
+#include "backend/constraint_error.h"
 #include "backend/selected_inverse.h"
 
 namespace loopgrid {
@@ -19,9 +20,10 @@ std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 template <typename Pose>
-Marginals<Pose>::Marginals(std::vector<Pose> poses, const NormalEquations<Pose>& equations,
+Marginals<Pose>::Marginals(const PoseGraph<Pose>& graph, const NormalEquations<Pose>& equations,
                            const SparseCholesky<kDof>& factor)
-    : poses_(std::move(poses)),
+    : poses_(graph.poses),
+      landmarks_(graph.landmarks),
       equations_(&equations),
       factor_(&factor),
       covariances_(poses_.size(), Covariance::Zero()),
@@ -40,14 +42,20 @@ Marginals<Pose>::Marginals(std::vector<Pose> poses, const NormalEquations<Pose>&
 }
 
 template <typename Pose>
+Eigen::MatrixXd Marginals<Pose>::ColumnsOf(int node) const {
+  const int variable = equations_->variable(node);
+  if (variable < 0) return {};
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(kDof * equations_->variable_count(), kDof);
+  unit.middleRows<kDof>(kDof * variable).setIdentity();
+  return factor_->Solve(unit);
+}
+
+template <typename Pose>
 std::vector<typename Marginals<Pose>::Covariance> Marginals<Pose>::CrossCovariances(
     int node) const {
   std::vector<Covariance> blocks(poses_.size(), Covariance::Zero());
-  const int variable = equations_->variable(node);
-  if (variable < 0) return blocks;
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(kDof * equations_->variable_count(), kDof);
-  unit.middleRows<kDof>(kDof * variable).setIdentity();
-  const Eigen::MatrixXd columns = factor_->Solve(unit);
+  const Eigen::MatrixXd columns = ColumnsOf(node);
+  if (columns.size() == 0) return blocks;
   for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
     const int row = equations_->variable(i);
     if (row >= 0) blocks[Index(i)] = columns.middleRows<kDof>(kDof * row);
@@ -93,6 +101,30 @@ std::vector<typename Marginals<Pose>::Covariance> Marginals<Pose>::RelativeTo(in
 }
 
 template <typename Pose>
+std::vector<typename Marginals<Pose>::PointCovariance> Marginals<Pose>::LandmarksRelativeTo(
+    int node) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Components& components = equations_->components();
+  const Pose& pose = poses_[Index(node)];
+  const Eigen::MatrixXd columns = ColumnsOf(node);
+  std::vector<PointCovariance> relative = landmark_covariances_;
+  for (int i = 0; i < static_cast<int>(relative.size()); ++i) {
+    if (components.of_landmark[Index(i)] != components.of_node[Index(node)]) {
+      relative[Index(i)] = Pose::Point::Constant(kInfinity).asDiagonal();
+    } else if (columns.size() > 0) {
+      // A motion d of `node` moves the landmark, seen from there, by R J d in the map's axes.
+      const auto J = Linearize(pose, landmarks_[Index(i)], Pose::Point::Zero().eval()).J_node;
+      const Eigen::Matrix<double, kPoint, kDof> A = pose.rotation() * J;
+      const int row = kDof * equations_->landmark_variable(i);
+      const PointCovariance mixed = columns.template middleRows<kPoint>(row) * A.transpose();
+      relative[Index(i)] +=
+          mixed + mixed.transpose() + A * covariances_[Index(node)] * A.transpose();
+    }
+  }
+  return relative;
+}
+
+template <typename Pose>
 std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovariances(
     const PoseGraph<Pose>& graph, int node, const RobustLoss& loss) {
   Validate(graph);
@@ -106,7 +138,7 @@ std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovaria
   SparseCholesky<Pose::kDof> factor;
   factor.Analyze(equations.hessian());
   if (!factor.Factorize(equations.hessian())) return std::nullopt;
-  return Marginals<Pose>(graph.poses, equations, factor).RelativeTo(node);
+  return Marginals<Pose>(graph, equations, factor).RelativeTo(node);
 }
 
 template <typename Pose>

@@ -24,8 +24,8 @@ class Marginals {
   using Covariance = Eigen::Matrix<double, kDof, kDof>;
   using PointCovariance = Eigen::Matrix<double, kPoint, kPoint>;
 
-  /// `factor` is that of the equations' undamped Hessian, linearised at these poses.
-  Marginals(std::vector<Pose> poses, const NormalEquations<Pose>& equations,
+  /// `factor` is that of the equations' undamped Hessian, linearised where the graph is.
+  Marginals(const PoseGraph<Pose>& graph, const NormalEquations<Pose>& equations,
             const SparseCholesky<kDof>& factor);
 
   /// Of every node relative to the held node of its component; zero for held nodes.
@@ -49,8 +49,16 @@ class Marginals {
   /// with several fixed nodes in a component do they differ: those are then known exactly.
   std::vector<Covariance> RelativeTo(int node) const;
 
+  /// Of every landmark relative to `node`, in the map frame. Infinite on the diagonal where no node
+  /// of the same component has seen it.
+  std::vector<PointCovariance> LandmarksRelativeTo(int node) const;
+
  private:
+  /// The columns of the inverse that belong to a node; empty if it is held.
+  Eigen::MatrixXd ColumnsOf(int node) const;
+
   std::vector<Pose> poses_;
+  std::vector<typename Pose::Point> landmarks_;
   const NormalEquations<Pose>* equations_;
   const SparseCholesky<kDof>* factor_;
   std::vector<Covariance> covariances_;

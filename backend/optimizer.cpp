@@ -241,7 +241,7 @@ std::optional<Marginals<Pose>> Optimizer<Pose>::ComputeMarginals(const PoseGraph
     factor_is_current_ = false;
     if (!is_definite) return std::nullopt;
   }
-  return Marginals<Pose>(graph.poses, equations_, factor_);
+  return Marginals<Pose>(graph, equations_, factor_);
 }
 
 template <typename Pose>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <string>
 
@@ -116,10 +117,22 @@ std::vector<int> HeldNodes(const PoseGraph<Pose>& graph, const Components& compo
   return nodes;
 }
 
-#define LOOPGRID_INSTANTIATE(Pose)                                 \
-  template void Validate(const PoseGraph<Pose>&);                  \
-  template Components ConnectedComponents(const PoseGraph<Pose>&); \
-  template std::vector<int> HeldNodes(const PoseGraph<Pose>&, const Components&);
+template <typename Pose>
+std::int64_t DegreesOfFreedom(const PoseGraph<Pose>& graph, const Components& components) {
+  constexpr int kPoint = Pose::Point::RowsAtCompileTime;
+  const std::int64_t moving = std::ssize(graph.poses) - std::ssize(HeldNodes(graph, components));
+  const std::int64_t seen =
+      std::ssize(graph.landmarks) -
+      std::count(components.of_landmark.begin(), components.of_landmark.end(), -1);
+  return Pose::kDof * (std::ssize(graph.constraints) - moving) +
+         kPoint * (std::ssize(graph.observations) - seen);
+}
+
+#define LOOPGRID_INSTANTIATE(Pose)                                                \
+  template void Validate(const PoseGraph<Pose>&);                                 \
+  template Components ConnectedComponents(const PoseGraph<Pose>&);                \
+  template std::vector<int> HeldNodes(const PoseGraph<Pose>&, const Components&); \
+  template std::int64_t DegreesOfFreedom(const PoseGraph<Pose>&, const Components&);
 LOOPGRID_INSTANTIATE(SE2)
 LOOPGRID_INSTANTIATE(SE3)
 #undef LOOPGRID_INSTANTIATE

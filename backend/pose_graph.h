@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "backend/geometry/se2.h"
@@ -73,5 +74,10 @@ Components ConnectedComponents(const PoseGraph<Pose>& graph);
 /// relative poses.
 template <typename Pose>
 std::vector<int> HeldNodes(const PoseGraph<Pose>& graph, const Components& components);
+
+/// Equations minus unknowns, which is what F is on average at the optimum if the information
+/// matrices are true.
+template <typename Pose>
+std::int64_t DegreesOfFreedom(const PoseGraph<Pose>& graph, const Components& components);
 
 }  // namespace loopgrid

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <random>
 #include <string>
 
 #include "backend/base/error.h"
@@ -160,6 +162,72 @@ TEST(Marginals, RespectSeveralFixedNodes) {
       test_support::InverseWithout(test_support::DenseHessian(graph), {3, 15}, 3);
   const Eigen::Matrix3d block = expected.block<3, 3>(30, 30);
   EXPECT_TRUE((*relative)[10].isApprox(block, 1e-9));
+}
+
+/// A loop of nodes, each of which sees three of four landmarks; a fifth is seen by nobody.
+template <typename Pose>
+PoseGraph<Pose> GraphWithLandmarks() {
+  std::mt19937 random(81);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](auto vector, double sigma) -> decltype(vector) {
+    for (double& number : vector) number = sigma * normal(random);
+    return vector;
+  };
+  PoseGraph<Pose> graph;
+  for (int i = 0; i < 6; ++i) {
+    graph.poses.push_back(Pose(noise(typename Pose::Tangent(), 0.4)));
+    graph.constraints.emplace_back();
+    graph.constraints.back().from = i == 0 ? 5 : i - 1;
+    graph.constraints.back().to = i;
+  }
+  for (auto& constraint : graph.constraints) {
+    constraint.T_from_to =
+        (graph.poses[Index(constraint.from)].Inverse() * graph.poses[Index(constraint.to)])
+            .Boxplus(noise(typename Pose::Tangent(), 0.01));
+    constraint.information = 100.0 * Constraint<Pose>::Information::Identity();
+  }
+  for (int k = 0; k < 5; ++k) graph.landmarks.push_back(noise(typename Pose::Point(), 3.0));
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      LandmarkObservation<Pose> observation;
+      observation.node = i;
+      observation.landmark = (i + k) % 4;
+      observation.p_node =
+          graph.poses[Index(i)].Inverse() * graph.landmarks[Index(observation.landmark)];
+      observation.information *= 50.0 + 10.0 * k;
+      graph.observations.push_back(observation);
+    }
+  }
+  return graph;
+}
+
+template <typename Pose>
+void ExpectLandmarksRelativeToANodeAreThoseWithItHeld() {
+  PoseGraph<Pose> graph = GraphWithLandmarks<Pose>();
+  Optimizer<Pose> optimizer;
+  ASSERT_EQ(optimizer.Optimize(&graph).termination, Termination::kConverged);
+  const auto marginals = optimizer.ComputeMarginals(graph);
+  ASSERT_TRUE(marginals);
+  for (int node = 0; node < 6; ++node) {
+    PoseGraph<Pose> held = graph;
+    held.fixed = {node};
+    Optimizer<Pose> other;
+    const auto expected = other.ComputeMarginals(held);
+    ASSERT_TRUE(expected);
+    const auto relative = marginals->LandmarksRelativeTo(node);
+    ASSERT_EQ(relative.size(), 5u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_TRUE(relative[k].isApprox(expected->landmark_covariances()[k], 1e-9))
+          << k << " relative to " << node;
+    }
+    EXPECT_TRUE(std::isinf(relative[4](0, 0)));
+    EXPECT_EQ(relative[4](0, 1), 0.0);
+  }
+}
+
+TEST(Marginals, OfLandmarksRelativeToANodeAreThoseWithItHeld) {
+  ExpectLandmarksRelativeToANodeAreThoseWithItHeld<SE2>();
+  ExpectLandmarksRelativeToANodeAreThoseWithItHeld<SE3>();
 }
 
 TEST(ExtendRelativeCovariances, GivesWhatANewFactorisationWould) {

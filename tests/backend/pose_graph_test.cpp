@@ -85,5 +85,16 @@ TEST(Validate, NamesWhatIsWrong) {
   }
 }
 
+TEST(DegreesOfFreedom, AreEquationsMinusUnknowns) {
+  // Two components of a loop and a pair; one landmark seen three times, one never.
+  PoseGraph<SE2> graph = GraphWithEdges(5, {{0, 1}, {1, 2}, {2, 0}, {3, 4}});
+  EXPECT_EQ(DegreesOfFreedom(graph, ConnectedComponents(graph)), 3 * (4 - 3));
+  graph.landmarks.resize(2);
+  graph.observations.resize(3);
+  EXPECT_EQ(DegreesOfFreedom(graph, ConnectedComponents(graph)), 3 * (4 - 3) + 2 * (3 - 1));
+  graph.fixed = {0, 1};
+  EXPECT_EQ(DegreesOfFreedom(graph, ConnectedComponents(graph)), 3 * (4 - 2) + 2 * (3 - 1));
+}
+
 }  // namespace
 }  // namespace loopgrid
