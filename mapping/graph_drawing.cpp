@@ -26,7 +26,7 @@ constexpr double kLandmarkRadius = 4.0;  // pixels
 // Where the eye of an oblique view is: degrees from x to y, and above the horizon.
 constexpr double kAzimuth = -55.0;
 constexpr double kElevation = 28.0;
-constexpr double kPalest = 0.8;  // share of white in the colour of what is farthest away
+constexpr double kPalest = 0.75;  // share of white in the colour of what is farthest away
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
@@ -54,7 +54,7 @@ Projection ProjectionOf(Viewpoint viewpoint) {
 /// A state of a graph as it appears in the plane of the picture.
 struct Panel {
   std::vector<Eigen::Vector2d> nodes;
-  std::vector<double> depths;  // of the nodes, 0 (nearest) to 1
+  std::vector<double> depths;  // of the nodes: the share of them that is nearer
   std::vector<Eigen::Vector2d> landmarks;
   Eigen::AlignedBox2d extent;
 };
@@ -72,11 +72,13 @@ Panel Project(const GraphState& state, Viewpoint viewpoint) {
     panel.landmarks.push_back(project(landmark));
     panel.extent.extend(panel.landmarks.back());
   }
-  if (panel.depths.empty()) return panel;
-  const auto [nearest, farthest] = std::minmax_element(panel.depths.begin(), panel.depths.end());
-  const double first = *nearest;
-  const double range = *farthest - first;
-  for (double& depth : panel.depths) depth = range > 0.0 ? (depth - first) / range : 0.0;
+  // Shares make the most of the shades wherever most nodes are, and agree if all are equally far.
+  std::vector<double> sorted = panel.depths;
+  std::sort(sorted.begin(), sorted.end());
+  for (double& depth : panel.depths) {
+    const auto nearer = std::lower_bound(sorted.begin(), sorted.end(), depth) - sorted.begin();
+    depth = static_cast<double>(nearer) / static_cast<double>(sorted.size());
+  }
   return panel;
 }
 
@@ -145,11 +147,11 @@ void DrawEdges(std::span<const GraphEdge> edges, const Panel& panel, const Pixel
 
 /// The directions of x, y and z in an oblique view, in the lower right corner of its row.
 void DrawAxes(int right, int base, Canvas* canvas) {
-  constexpr double kLength = 1.6 * kTextHeight;
-  constexpr int kLetter = kTextHeight - 6;
+  constexpr double kLength = 2.0 * kTextHeight;
+  constexpr int kLetter = kTextHeight - 4;
   const Projection project = ProjectionOf(Viewpoint::kOblique);
   const PixelArea area{0, 0, canvas->width(), canvas->height()};
-  const Eigen::Vector2d origin(right - 2.5 * kTextHeight, base);
+  const Eigen::Vector2d origin(right - 3.0 * kTextHeight, base);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector2d in_plane = project(Eigen::Vector3d::Unit(axis));
     const Eigen::Vector2d direction(in_plane.x(), -in_plane.y());
