@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/arguments.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -14,72 +15,33 @@ constexpr const char* kExitStatus =
     "written,\n"
     "128 + n ended by signal n.";
 
-constexpr const char* kRunFooter =
-    "Files written to DIR, all of them or none:\n"
-    "  map.png           the map: white free, black wall, grey unknown\n"
-    "  map.pgm map.yaml  the same for a robot's map server\n"
-    "  trajectory.tum    pose of every scan: time x y z qx qy qz qw (seconds, metres)\n"
-    "  corrected.clf     the log with corrected poses, CARMEN format\n"
-    "  graph.g2o         nodes and constraints with information matrices\n"
-    "  closures.csv      every loop closure tried, and why it was or was not made\n"
-    "  graph.png         the graph over the map, before and after\n"
-    "  uncertainty.png   3 sigma ellipses of the nodes as seen from the last pose\n"
-    "  report.json       counts, errors, options, times, memory";
-
-void AddRun(CLI::App* program, RunOptions* options) {
-  CLI::App* run = program->add_subcommand("run", "Make a map of a log");
-  run->add_option("LOG", options->log,
-                  "The log: CARMEN text or MRPT rawlog, either may be gzipped; known by content")
-      ->required()
-      ->type_name("");
-  run->add_option("--out", options->out, "Folder to write to; made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  run->add_option("--resolution", options->resolution, "Side of a map cell, 0.01 to 1 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  run->add_option("--node-distance", options->slam.node_distance,
-                  "A new node of the graph after this much travel, 0.05 to 10 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  run->add_option("--node-angle", options->slam.node_angle,
-                  "... or after this much turning, 0.05 to 3 radians")
-      ->capture_default_str()
-      ->type_name("RADIANS");
-  run->add_flag("--strict", options->strict,
-                "Stop at the first malformed line of the log [default: skip and count them]");
-  run->add_flag("--quiet", options->quiet,
-                "No progress bar [default: one if standard error is a terminal]");
-  run->footer(kRunFooter);
-}
-
-void AddEval(CLI::App* program, EvalOptions* options) {
-  CLI::App* eval = program->add_subcommand("eval", "Say how accurate a trajectory is");
-  eval->add_option("ESTIMATE", options->estimate,
-                   "The trajectory to judge, TUM format: time x y z qx qy qz qw")
-      ->required()
-      ->type_name("");
-  eval->add_option("REFERENCE", options->reference,
-                   "Relations (t1 t2 x y z roll pitch yaw; Kuemmerle et al. 2009) or a reference "
-                   "trajectory in TUM format, which is aligned first; known by content")
-      ->required()
-      ->type_name("");
-  eval->add_flag("--json", options->json, "Print JSON [default: text]");
-}
-
 }  // namespace
+
+CLI::Option* RequireName(CLI::Option* option) {
+  return option->check(CLI::Validator(
+      [](const std::string& name) -> std::string {
+        return name.empty() ? "the name is empty" : "";
+      },
+      ""));
+}
 
 Command ParseCommandLine(int argc, const char* const* argv) {
   RunOptions run;
   EvalOptions eval;
-  CLI::App program("Graph-based 2D laser SLAM: a robot's log in; map, trajectory and graph out.",
-                   "loopgrid");
+  OptimizeOptions optimize;
+  PlotOptions plot;
+  CLI::App program(
+      "Graph-based 2D laser SLAM: a robot's log in; map, trajectory and graph out. Its back-end\n"
+      "alone: a pose graph in, 2D or 3D; the best poses and their covariances out.",
+      "loopgrid");
   program.set_version_flag("--version", "loopgrid " LOOPGRID_VERSION, "Print the version and exit");
   program.footer(std::string("loopgrid COMMAND --help explains a command's options.\n") +
                  kExitStatus);
   program.require_subcommand(1);
   AddRun(&program, &run);
   AddEval(&program, &eval);
+  AddOptimize(&program, &optimize);
+  AddPlot(&program, &plot);
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -90,6 +52,8 @@ Command ParseCommandLine(int argc, const char* const* argv) {
     throw Error(ErrorCode::kUsage, fmt::format("{} (see loopgrid --help)", error.what()));
   }
   if (program.got_subcommand("run")) return run;
+  if (program.got_subcommand("optimize")) return optimize;
+  if (program.got_subcommand("plot")) return plot;
   return eval;
 }
 

@@ -4,6 +4,8 @@
 #include <variant>
 
 #include "apps/eval_command.h"
+#include "apps/optimize_options.h"
+#include "apps/plot_command.h"
 #include "apps/run_options.h"
 
 namespace loopgrid {
@@ -13,7 +15,7 @@ struct Answer {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, EvalOptions, Answer>;
+using Command = std::variant<RunOptions, EvalOptions, OptimizeOptions, PlotOptions, Answer>;
 
 /// What the arguments ask for. Throws Error (kUsage) if they make no sense.
 Command ParseCommandLine(int argc, const char* const* argv);

@@ -11,6 +11,8 @@
 
 #include "apps/command_line.h"
 #include "apps/eval_command.h"
+#include "apps/optimize_command.h"
+#include "apps/plot_command.h"
 #include "apps/run_command.h"
 #include "apps/standard_output.h"
 #include "backend/base/error.h"
@@ -42,6 +44,8 @@ void OccupyStandardStreams() {
 
 void Execute(const RunOptions& options) { RunCommand(options); }
 void Execute(const EvalOptions& options) { EvalCommand(options); }
+void Execute(const OptimizeOptions& options) { OptimizeCommand(options); }
+void Execute(const PlotOptions& options) { PlotCommand(options); }
 void Execute(const Answer& answer) { PrintToStandardOutput(answer.text); }
 
 /// One line, whatever the message has in it; nobody is left to tell if this fails.

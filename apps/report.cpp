@@ -1,7 +1,6 @@
 #include "apps/report.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,12 +78,6 @@ void RecordingClock::Add(double timestamp) {
 }
 
 double RecordingClock::seconds() const { return std::max(sum_, 0.0); }
-
-double PeakMemoryMb() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;
-}
 
 std::string FormatReportJson(const RunReport& report) {
   Json json;

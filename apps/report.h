@@ -41,9 +41,6 @@ class RecordingClock {
   double sum_ = 0.0;
 };
 
-/// The largest resident memory of this process so far, in 10^6 bytes.
-double PeakMemoryMb();
-
 /// report.json. All that may differ between two runs on the same input is under the key "timings".
 std::string FormatReportJson(const RunReport& report);
 

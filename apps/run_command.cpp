@@ -8,6 +8,7 @@
 
 #include "apps/interrupt_watch.h"
 #include "apps/output_directory.h"
+#include "apps/peak_memory.h"
 #include "apps/progress_bar.h"
 #include "apps/report.h"
 #include "apps/run_outputs.h"

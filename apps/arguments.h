@@ -1,0 +1,25 @@
+#pragma once
+
+#include "apps/eval_command.h"
+#include "apps/optimize_options.h"
+#include "apps/plot_command.h"
+#include "apps/run_options.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace loopgrid {
+
+/// Refuses an empty file name, which is what a shell makes of a variable that is not set.
+CLI::Option* RequireName(CLI::Option* option);
+
+// What the commands take, one function a command; each adds its command to the program.
+
+void AddRun(CLI::App* program, RunOptions* options);
+void AddEval(CLI::App* program, EvalOptions* options);
+void AddOptimize(CLI::App* program, OptimizeOptions* options);
+void AddPlot(CLI::App* program, PlotOptions* options);
+
+}  // namespace loopgrid
