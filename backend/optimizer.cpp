@@ -18,6 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFirstDamping = 1e-5;
 constexpr double kLargestDamping = 1e10;
 constexpr double kDampingFactor = 10.0;
+constexpr double kOvershot = 0.25;  // share of the promised decrease
 constexpr double kSmallestScale = 1e-9;
 
 // When F fell as the model promised, to within this share, the Hessian has hardly changed, and its
@@ -28,9 +29,11 @@ constexpr double kSlow = 0.1;
 
 constexpr double kSmallestRadius = 1e-12;
 
-// Full steps on trial after one that does not lower F, and trials that may fail in a row.
+// Full steps on trial after one that does not lower F, and trials that may fail in a row. A trial
+// has to lower F by this share of what its first step promised, or else to and fro is progress.
 constexpr int kLookAhead = 3;
 constexpr int kTrials = 3;
+constexpr double kWorthwhile = 0.1;
 
 // The square of a graduated loss's width falls by this factor at a time (Yang et al. 2020).
 constexpr double kGraduation = 1.4;
@@ -157,13 +160,11 @@ OptimizerResult Optimizer<Pose>::MinimizeGraduated(PoseGraph<Pose>* graph) {
     minimize({LossKind::kGemanMcClure, width});
   }
   result.final_error = minimize(options_.loss);
-  result.initial_error = initial_error;
-  if (result.final_error > initial_error) {
+  if (!(result.final_error <= initial_error)) {  // led astray: without the detour, then
     Restore(start, graph);
-    factor_is_current_ = false;
-    result.final_error = initial_error;
-    result.termination = Termination::kDiverged;
+    result.final_error = minimize(options_.loss);
   }
+  result.initial_error = initial_error;
   return result;
 }
 
@@ -298,7 +299,8 @@ std::optional<Termination> Optimizer<Pose>::LevenbergMarquardtStep(PoseGraph<Pos
     was_definite = true;
     switch (TryFactor(graph, kInfinity, result)) {
       case Trial::kTaken:
-        damping = Weaker(damping);
+        // A step that overshoots comes out little lower on the other side: shorter ones from there.
+        damping = last_gain_ < kOvershot ? Stronger(damping) : Weaker(damping);
         return std::nullopt;
       case Trial::kNegligible:
         if (was_rejected) return Termination::kStalled;
@@ -322,12 +324,14 @@ bool Optimizer<Pose>::LookAhead(PoseGraph<Pose>* graph, OptimizerResult* result)
   if (failed_trials_ >= kTrials) return false;
   const State start = StateOf(*graph);
   OptimizerResult ahead = *result;
+  double enough = 0.0;
   for (int step = 0; step < kLookAhead && ahead.iterations < options_.max_iterations; ++step) {
     const Eigen::VectorXd dx = factor_.Solve(-equations_.gradient());
+    if (step == 0) enough = result->final_error + kWorthwhile * equations_.gradient().dot(dx);
     last_step_ = dx.norm();
     Move(graph, dx);
     ahead.final_error = TotalError(*graph, objective_);
-    if (ahead.final_error < result->final_error) {
+    if (ahead.final_error < enough) {
       *result = std::move(ahead);
       failed_trials_ = 0;
       return true;

@@ -64,7 +64,7 @@ class Optimizer {
 
   /// Covariances at the graph's poses and landmarks, for local motions (Pose::Boxplus); nothing if
   /// the Hessian there is not positive definite. Right after Optimize of the same graph its
-  /// factorisation is used. Valid until the optimiser is used again or moved.
+  /// factorisation is used. Valid until the optimiser is used again.
   std::optional<Marginals<Pose>> ComputeMarginals(const PoseGraph<Pose>& graph);
 
  private:

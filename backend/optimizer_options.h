@@ -20,7 +20,7 @@ enum class Method {
 struct OptimizerOptions {
   Method method = Method::kLevenbergMarquardt;
   Parametrization parametrization = Parametrization::kManifold;
-  int max_iterations = 100;  ///< steps
+  int max_iterations = 100;  ///< steps, with a graduated loss of each of its stages
   /// Stop when the next step promises to lower F by less than this share of F ...
   double relative_decrease = 1e-8;
   /// ... or by less than this (F counts squared standard deviations).
@@ -28,7 +28,8 @@ struct OptimizerOptions {
   /// Of the constraints and observations marked robust.
   RobustLoss loss;
   /// Graduated non-convexity (Yang et al. 2020), for Geman-McClure losses: begins with a width at
-  /// which nothing is an outlier and narrows it, so that the start matters less.
+  /// which nothing is an outlier and narrows it, so that the start matters less. Where that
+  /// ends higher than the start it is done without.
   bool graduated = false;
   int threads = 1;     ///< to linearise large graphs; the result does not depend on it
   bool trace = false;  ///< fill in OptimizerResult::trace
