@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <random>
+
+#include "tests/support/block_matrices.h"
+
 namespace loopgrid {
 namespace {
 
@@ -44,6 +49,22 @@ TEST(SymmetricBlockMatrix, ClearForgetsThePattern) {
   EXPECT_EQ(H.block_count(), 0);
   H.Resize(3);
   EXPECT_EQ(H.FindOrAddBlock(1, 2), 0);
+}
+
+template <int kDim>
+void ExpectProductsAreThoseOfTheDenseMatrix() {
+  std::mt19937 random(1);
+  for (int cols = 1; cols <= 20; ++cols) {
+    const auto H = test_support::RandomBlockMatrix<kDim>(cols, 2 * cols, &random);
+    const Eigen::VectorXd x = Eigen::VectorXd::Random(kDim * cols);
+    EXPECT_TRUE((H * x).isApprox(test_support::Dense(H) * x, 1e-13)) << cols << " columns";
+  }
+}
+
+TEST(SymmetricBlockMatrix, TimesAVectorIsThatOfTheDenseMatrix) {
+  ExpectProductsAreThoseOfTheDenseMatrix<2>();
+  ExpectProductsAreThoseOfTheDenseMatrix<3>();
+  ExpectProductsAreThoseOfTheDenseMatrix<6>();
 }
 
 }  // namespace

@@ -124,9 +124,7 @@ void Register(const std::string& name, const PoseGraph<Pose>& graph) {
   add("LinearizeOnTwoThreads", [](State& state, const Graph& g) { Linearize(state, g, 2); });
   add("Analyze", Analyze<Pose>);
   add("Factorize", Factorize<SparseCholesky<Pose::kDof>, Pose>);
-  if constexpr (Pose::kDof == 3) {
-    add("FactorizeByCholmod", Factorize<test_support::CholmodSolver, Pose>);
-  }
+  add("FactorizeByCholmod", Factorize<test_support::CholmodSolver<Pose::kDof>, Pose>);
   add("Solve", Solve<Pose>);
   add("Diagonal", Diagonal<Pose>);
   add("RelativeToLast", RelativeToLast<Pose>);

@@ -46,8 +46,9 @@ void Randomize(std::mt19937* random, SymmetricBlockMatrix<kDim>* H) {
 }
 
 /// A matrix of `cols` block columns with about `blocks` random off-diagonal blocks.
-inline SymmetricBlockMatrix<3> RandomBlockMatrix(int cols, int blocks, std::mt19937* random) {
-  SymmetricBlockMatrix<3> H;
+template <int kDim>
+SymmetricBlockMatrix<kDim> RandomBlockMatrix(int cols, int blocks, std::mt19937* random) {
+  SymmetricBlockMatrix<kDim> H;
   H.Resize(cols);
   std::uniform_int_distribution<int> any(0, cols - 1);
   for (int k = 0; k < blocks; ++k) {

@@ -9,14 +9,13 @@
 namespace loopgrid::test_support {
 namespace {
 
-constexpr int kDim = 3;
-
 /// A pivot this small relative to its diagonal entry is rounding noise: the matrix is singular.
 constexpr double kSmallestPivot = 1e-14;
 
 }  // namespace
 
-class CholmodSolver::Impl {
+template <int kDim>
+class CholmodSolver<kDim>::Impl {
  public:
   Impl() {
     cholmod_start(&common_);
@@ -34,7 +33,7 @@ class CholmodSolver::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  void Analyze(const SymmetricBlockMatrix<3>& H) {
+  void Analyze(const SymmetricBlockMatrix<kDim>& H) {
     FreeMatrices();
     BuildPattern(H);
     const std::vector<int> order = OrderBlocks(H);
@@ -45,7 +44,7 @@ class CholmodSolver::Impl {
     factor_ = Check(cholmod_analyze_p(matrix_, scalar_order.data(), nullptr, 0, &common_));
   }
 
-  bool Factorize(const SymmetricBlockMatrix<3>& H) {
+  bool Factorize(const SymmetricBlockMatrix<kDim>& H) {
     FillValues(H);
     cholmod_factorize(matrix_, factor_, &common_);
     if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -82,7 +81,7 @@ class CholmodSolver::Impl {
   }
 
   // The upper triangle by scalar columns; remembers where each block's columns begin.
-  void BuildPattern(const SymmetricBlockMatrix<3>& H) {
+  void BuildPattern(const SymmetricBlockMatrix<kDim>& H) {
     const int n = H.cols();
     std::vector<std::vector<int>> blocks_of_column(static_cast<std::size_t>(n));
     for (int k = 0; k < H.block_count(); ++k) {
@@ -90,7 +89,8 @@ class CholmodSolver::Impl {
           .push_back(k);
     }
     const std::size_t scalars = static_cast<std::size_t>(kDim) * static_cast<std::size_t>(n);
-    const std::size_t nonzeros = 9 * static_cast<std::size_t>(H.block_count()) + 2 * scalars;
+    const std::size_t nonzeros = static_cast<std::size_t>(kDim * kDim * H.block_count()) +
+                                 static_cast<std::size_t>(kDim + 1) * scalars / 2;
     matrix_ =
         Check(cholmod_allocate_sparse(scalars, scalars, nonzeros, 0, 1, 1, CHOLMOD_REAL, &common_));
     int* const starts = static_cast<int*>(matrix_->p);
@@ -112,7 +112,7 @@ class CholmodSolver::Impl {
   }
 
   // Approximate minimum degree on the graph of blocks: faster and no worse than on scalars.
-  std::vector<int> OrderBlocks(const SymmetricBlockMatrix<3>& H) {
+  std::vector<int> OrderBlocks(const SymmetricBlockMatrix<kDim>& H) {
     const auto n = static_cast<std::size_t>(H.cols());
     cholmod_sparse* graph = Check(cholmod_allocate_sparse(
         n, n, static_cast<std::size_t>(H.block_count()), 0, 1, 1, CHOLMOD_PATTERN, &common_));
@@ -134,18 +134,18 @@ class CholmodSolver::Impl {
     return order;
   }
 
-  void FillValues(const SymmetricBlockMatrix<3>& H) {
+  void FillValues(const SymmetricBlockMatrix<kDim>& H) {
     double* const values = static_cast<double*>(matrix_->x);
     for (int k = 0; k < H.block_count(); ++k) {
-      const Eigen::Matrix3d& block = H.off_diagonal(k);
+      const auto& block = H.off_diagonal(k);
       for (int c = 0; c < kDim; ++c) {
-        Eigen::Map<Eigen::Vector3d>(values + block_places_[static_cast<std::size_t>(k)].start[c]) =
-            block.col(c);
+        Eigen::Map<Eigen::Matrix<double, kDim, 1>>(
+            values + block_places_[static_cast<std::size_t>(k)].start[c]) = block.col(c);
       }
     }
     const int* const ends = static_cast<const int*>(matrix_->p) + 1;
     for (int col = 0; col < H.cols(); ++col) {
-      const Eigen::Matrix3d& block = H.diagonal(col);
+      const auto& block = H.diagonal(col);
       for (int c = 0; c < kDim; ++c) {
         double* const last = values + ends[kDim * col + c] - 1;
         for (int r = 0; r <= c; ++r) last[r - c] = block(r, c);
@@ -177,17 +177,32 @@ class CholmodSolver::Impl {
   std::vector<BlockPlace> block_places_;
 };
 
-CholmodSolver::CholmodSolver() : impl_(std::make_unique<Impl>()) {}
-CholmodSolver::~CholmodSolver() = default;
-CholmodSolver::CholmodSolver(CholmodSolver&&) noexcept = default;
-CholmodSolver& CholmodSolver::operator=(CholmodSolver&&) noexcept = default;
+template <int kDim>
+CholmodSolver<kDim>::CholmodSolver() : impl_(std::make_unique<Impl>()) {}
+template <int kDim>
+CholmodSolver<kDim>::~CholmodSolver() = default;
+template <int kDim>
+CholmodSolver<kDim>::CholmodSolver(CholmodSolver&&) noexcept = default;
+template <int kDim>
+CholmodSolver<kDim>& CholmodSolver<kDim>::operator=(CholmodSolver&&) noexcept = default;
 
-void CholmodSolver::Analyze(const SymmetricBlockMatrix<3>& H) { impl_->Analyze(H); }
+template <int kDim>
+void CholmodSolver<kDim>::Analyze(const SymmetricBlockMatrix<kDim>& H) {
+  impl_->Analyze(H);
+}
 
-bool CholmodSolver::Factorize(const SymmetricBlockMatrix<3>& H) { return impl_->Factorize(H); }
+template <int kDim>
+bool CholmodSolver<kDim>::Factorize(const SymmetricBlockMatrix<kDim>& H) {
+  return impl_->Factorize(H);
+}
 
-Eigen::MatrixXd CholmodSolver::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
+template <int kDim>
+Eigen::MatrixXd CholmodSolver<kDim>::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
   return impl_->Solve(rhs);
 }
+
+template class CholmodSolver<2>;
+template class CholmodSolver<3>;
+template class CholmodSolver<6>;
 
 }  // namespace loopgrid::test_support

@@ -9,6 +9,7 @@ namespace loopgrid::test_support {
 
 /// What SparseCholesky is compared with: CHOLMOD's simplicial factorisation (faster than its
 /// supernodal one on the graphs of planar SLAM), ordered by minimum degree on the blocks.
+template <int kDim>
 class CholmodSolver {
  public:
   CholmodSolver();
@@ -17,11 +18,11 @@ class CholmodSolver {
   CholmodSolver& operator=(CholmodSolver&&) noexcept;
 
   /// Finds a fill-reducing ordering of the blocks and the structure of the factor.
-  void Analyze(const SymmetricBlockMatrix<3>& H);
+  void Analyze(const SymmetricBlockMatrix<kDim>& H);
 
   /// Factorises H, which must have the pattern that was analysed. False if the
   /// matrix is not positive definite to working precision.
-  [[nodiscard]] bool Factorize(const SymmetricBlockMatrix<3>& H);
+  [[nodiscard]] bool Factorize(const SymmetricBlockMatrix<kDim>& H);
 
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
@@ -30,5 +31,9 @@ class CholmodSolver {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+extern template class CholmodSolver<2>;
+extern template class CholmodSolver<3>;
+extern template class CholmodSolver<6>;
 
 }  // namespace loopgrid::test_support
