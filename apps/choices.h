@@ -13,6 +13,9 @@ struct Choice {
   Value value;
 };
 
+template <typename Value>
+Choice(const char*, Value) -> Choice<Value>;
+
 template <typename Value, std::size_t kCount>
 constexpr std::string_view NameOf(const std::array<Choice<Value>, kCount>& choices, Value value) {
   for (const Choice<Value>& choice : choices) {

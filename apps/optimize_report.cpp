@@ -191,10 +191,9 @@ void AddResult(const OptimizeReport& report, Lines* lines) {
                report.options.Loss().width);
   }
   const bool is_unfinished = result.termination == Termination::kMaxIterations;
-  lines->Add(
-      "end", "{} after {}{}", ToString(result.termination),
-      Counted(static_cast<std::size_t>(result.iterations), "iteration"),
-      is_unfinished ? ": F was still falling, more of them (--max-iterations) may lower it" : "");
+  lines->Add("end", "{} after {}{}", ToString(result.termination),
+             Counted(static_cast<std::size_t>(result.iterations), "iteration"),
+             is_unfinished ? ": not converged, more of them (--max-iterations) may lower F" : "");
   lines->Add("optimum", "{}", ExplainOptimality(report));
 }
 

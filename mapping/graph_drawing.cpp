@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -22,6 +23,7 @@ constexpr Color kLandmarkColor{20, 140, 60};
 
 constexpr int kBackdropCells = 1200;
 constexpr double kLandmarkRadius = 4.0;  // pixels
+constexpr double kBorder = 0.008;        // free space around the graph, share of its larger side
 
 // Where the eye of an oblique view is: degrees from x to y, and above the horizon.
 constexpr double kAzimuth = -55.0;
@@ -72,6 +74,11 @@ Panel Project(const GraphState& state, Viewpoint viewpoint) {
     panel.landmarks.push_back(project(landmark));
     panel.extent.extend(panel.landmarks.back());
   }
+  if (!panel.extent.isEmpty()) {
+    const Eigen::Vector2d border =
+        Eigen::Vector2d::Constant(kBorder * panel.extent.sizes().maxCoeff());
+    panel.extent = {panel.extent.min() - border, panel.extent.max() + border};
+  }
   // Shares make the most of the shades wherever most nodes are, and agree if all are equally far.
   std::vector<double> sorted = panel.depths;
   std::sort(sorted.begin(), sorted.end());
@@ -109,8 +116,8 @@ struct Pen {
 /// `ink` is the share of the picture that lines one pixel wide would cover if none met another.
 Pen PenFor(double ink) {
   constexpr double kBroadest = 0.03;
-  constexpr double kDensest = 0.2;
-  constexpr double kFaintest = 0.25;
+  constexpr double kDensest = 0.35;
+  constexpr double kFaintest = 0.04;
   return {ink < kBroadest, std::clamp(kDensest / ink, kFaintest, 1.0)};
 }
 
@@ -182,14 +189,16 @@ void DrawLegend(std::span<const GraphEdge> edges, std::size_t landmarks, Canvas*
   const auto closures = std::count_if(edges.begin(), edges.end(), [](const GraphEdge& edge) {
     return edge.kind == EdgeKind::kClosure;
   });
-  const auto sequential = static_cast<std::ptrdiff_t>(edges.size()) - closures;
+  const auto counted = [](std::ptrdiff_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
   const int base = canvas->height() - kPictureMargin;
-  int next = DrawLegendEntry(kPictureMargin, base, kSequentialColor, 4,
-                             fmt::format("{} sequential constraints", sequential), canvas);
-  next =
-      DrawLegendEntry(next, base, kClosureColor, 4, fmt::format("{} closures", closures), canvas);
+  int next = DrawLegendLine(kPictureMargin, base, kSequentialColor, 4,
+                            counted(std::ssize(edges) - closures, "sequential constraint"), canvas);
+  next = DrawLegendLine(next, base, kClosureColor, 4, counted(closures, "closure"), canvas);
   if (landmarks == 0) return;
-  DrawLegendEntry(next, base, kLandmarkColor, 10, fmt::format("{} landmarks", landmarks), canvas);
+  DrawLegendDot(next, base, kLandmarkColor, kLandmarkRadius,
+                counted(static_cast<std::ptrdiff_t>(landmarks), "landmark"), canvas);
 }
 
 void RequireFinite(std::span<const Eigen::Vector3d> points, const char* what) {

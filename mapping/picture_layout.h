@@ -25,8 +25,11 @@ inline constexpr Color kWallColor{130, 130, 130};
 /// How many pixels wide and high a picture of `extent` is when scaled to fit.
 Eigen::Vector2i FittedSize(const Eigen::AlignedBox2d& extent, int max_width, int max_height);
 
-/// A sample of a line and what it stands for; returns where the next entry goes.
-int DrawLegendEntry(int left, int base, Color color, int thickness, const std::string& text,
-                    Canvas* canvas);
+/// A sample of a line, or of a dot, and what it stands for; (left, base) is the lower left corner.
+/// Return where the next entry goes.
+int DrawLegendLine(int left, int base, Color color, int thickness, const std::string& text,
+                   Canvas* canvas);
+int DrawLegendDot(int left, int base, Color color, double radius, const std::string& text,
+                  Canvas* canvas);
 
 }  // namespace loopgrid

@@ -12,6 +12,7 @@ namespace {
 
 constexpr Color kEllipseColor{30, 100, 190};
 constexpr Color kRobotColor{20, 140, 60};
+constexpr double kRobotRadius = 7.0;  // pixels
 constexpr double kSigmas = 3.0;
 
 Eigen::Matrix2d PositionCovariance(const SE2& node, const Eigen::Matrix3d& covariance) {
@@ -63,13 +64,13 @@ std::string DrawUncertainty(std::span<const SE2> nodes,
     view.DrawEllipse(nodes[i].translation(), PositionCovariance(nodes[i], covariances[i]), kSigmas,
                      kEllipseColor, 1);
   }
-  if (!nodes.empty()) view.DrawDot(nodes.back().translation(), 7.0, kRobotColor);
+  if (!nodes.empty()) view.DrawDot(nodes.back().translation(), kRobotRadius, kRobotColor);
   view.DrawScaleBar(area.left, area.top + area.height + 2 * kTextHeight, kTextHeight);
 
   const int base = canvas.height() - kPictureMargin;
   const int next =
-      DrawLegendEntry(kPictureMargin, base, kEllipseColor, 2, "3 sigma of a node", &canvas);
-  DrawLegendEntry(next, base, kRobotColor, 12, "last pose", &canvas);
+      DrawLegendLine(kPictureMargin, base, kEllipseColor, 2, "3 sigma of a node", &canvas);
+  DrawLegendDot(next, base, kRobotColor, kRobotRadius, "last pose", &canvas);
   return canvas.EncodePng();
 }
 

@@ -1,12 +1,10 @@
-// `loopgrid optimize` and `loopgrid plot` as their user meets them.
+// `loopgrid optimize` as its user meets it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -18,6 +16,7 @@
 #include "apps/trace_csv.h"
 #include "backend/graph_file.h"
 #include "tests/apps/program.h"
+#include "tests/apps/refusal.h"
 #include "tests/support/manhattan_world.h"
 #include "tests/support/temporary_directory.h"
 
@@ -32,7 +31,6 @@ using test_support::RunProgram;
 using test_support::TemporaryDirectory;
 using test_support::WriteFile;
 using ::testing::AllOf;
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -96,20 +94,9 @@ class OptimizeCommandTest : public ::testing::Test {
     return json::parse(result.output);
   }
 
-  /// One line on standard error, nothing else, and the folder as it was.
-  void ExpectRefusal(const Arguments& arguments, int status, const std::string& reason) const {
-    const std::set<std::string> found = folder_.Everything();
-    const ProgramResult result = RunProgram(arguments);
-    EXPECT_EQ(result.status, status) << result.errors;
-    EXPECT_THAT(result.output, IsEmpty());
-    EXPECT_THAT(result.errors, AllOf(StartsWith("loopgrid: "), EndsWith("\n"), HasSubstr(reason)));
-    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
-    EXPECT_EQ(folder_.Everything(), found);
-  }
-
   void ExpectRefusal(Arguments more, const std::string& reason, int status = 2) const {
     more.insert(more.begin(), {"optimize", graph_});
-    ExpectRefusal(more, status, reason);
+    test_support::ExpectRefusal(folder_, more, status, reason);
   }
 
   TemporaryDirectory folder_;
@@ -345,7 +332,7 @@ TEST_F(OptimizeCommandTest, OutputsAreTriedBeforeAnythingIsDone) {
 }
 
 TEST_F(OptimizeCommandTest, WhatCannotBeOptimisedIsAnInputError) {
-  ExpectRefusal({"optimize", folder_.File("none.g2o")}, 3, "none.g2o: ");
+  test_support::ExpectRefusal(folder_, {"optimize", folder_.File("none.g2o")}, 3, "none.g2o: ");
   WriteFile(graph_, "");
   ExpectRefusal(Arguments{}, "square.g2o: ", 3);
   WriteFile(graph_, "EDGE_SE2 0 1 1 0\n");
@@ -376,35 +363,6 @@ TEST_F(OptimizeCommandTest, InterruptLeavesNothing) {
   EXPECT_EQ(result.status, 128 + SIGINT);
   EXPECT_THAT(result.output, IsEmpty());
   EXPECT_EQ(folder_.Everything(), std::set<std::string>{"square.g2o"});
-}
-
-TEST_F(OptimizeCommandTest, PlotDrawsTracesIntoOnePicture) {
-  const std::string a = folder_.File("manifold.csv");
-  const std::string b = folder_.File("euler.csv");
-  OptimizeJson({"--trace", a});
-  OptimizeJson({"--trace", b, "--parametrization", "euler"});
-  const std::string picture = folder_.File("both.png");
-  const ProgramResult result = RunProgram({"plot", a, b, "--out", picture});
-  EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_THAT(result.output, IsEmpty());
-  const std::string both = ReadFile(picture);
-  EXPECT_THAT(both, StartsWith("\x89PNG"));
-  ASSERT_EQ(RunProgram({"plot", a, "--out", picture}).status, 0);
-  EXPECT_NE(ReadFile(picture), both);
-}
-
-TEST_F(OptimizeCommandTest, PlotRefusesWhatItCannotDraw) {
-  const std::string out = folder_.File("plot.png");
-  ExpectRefusal({"plot", "--out", out}, 2, "TRACE");
-  ExpectRefusal({"plot", graph_}, 2, "--out");
-  ExpectRefusal({"plot", graph_, "--out", ""}, 2, "--out: the name is empty");
-  ExpectRefusal({"plot", graph_, "--out", folder_.File("a.svg")}, 2, "a.svg: pictures are PNG");
-  ExpectRefusal({"plot", graph_, "--out", out}, 3, "square.g2o:1: no column 'iteration'");
-  ExpectRefusal({"plot", folder_.File("none.csv"), "--out", out}, 3, "none.csv: ");
-  const std::string trace = folder_.Write("t.csv", "iteration,F\n0,9\n1,x\n");
-  ExpectRefusal({"plot", trace, "--out", out}, 3, "t.csv:3: 'x' is not a number");
-  WriteFile(trace, "iteration,F\n0,9\n");
-  ExpectRefusal({"plot", trace, "--out", folder_.File("none/plot.png")}, 4, "none/plot.png: ");
 }
 
 }  // namespace

@@ -9,12 +9,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "tests/apps/program.h"
+#include "tests/apps/refusal.h"
 #include "tests/apps/small_log.h"
 #include "tests/support/temporary_directory.h"
 
@@ -30,11 +32,9 @@ using test_support::SmallLog;
 using test_support::TemporaryDirectory;
 using test_support::WriteFile;
 using ::testing::AllOf;
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using ::testing::StartsWith;
 using Names = std::set<std::string>;
 
 const Names kOutputs = {"closures.csv",   "corrected.clf",  "graph.g2o", "graph.png",
@@ -59,16 +59,9 @@ class ProgramTest : public ::testing::Test {
     return RunProgram({"run", log, "--out", out}, before);
   }
 
-  /// One line on standard error, nothing else, and the folder as it was.
   void ExpectRefusal(const std::vector<std::string>& arguments, int status,
                      const std::string& reason, const std::function<void()>& before = {}) const {
-    const Names found = folder_.Everything();
-    const ProgramResult result = RunProgram(arguments, before);
-    EXPECT_EQ(result.status, status) << result.errors;
-    EXPECT_THAT(result.output, IsEmpty());
-    EXPECT_THAT(result.errors, AllOf(StartsWith("loopgrid: "), EndsWith("\n"), HasSubstr(reason)));
-    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
-    EXPECT_EQ(folder_.Everything(), found);
+    test_support::ExpectRefusal(folder_, arguments, status, reason, before);
   }
 
   TemporaryDirectory folder_;

@@ -96,6 +96,11 @@ TEST(DrawGraphBeforeAfter, ShowsLandmarksAsDots) {
   state.landmarks = {{5.0, 5.0, 0.0}, {2.0, 7.0, 0.0}};
   const cv::Mat image = Decode(DrawGraphBeforeAfter(state, state, SquareEdges()));
   EXPECT_GT(Count(image.rowRange(0, image.rows - kLegendHeight), kGreen), 4 * 30);
+  // At the border of the picture, too, whole dots.
+  GraphState corners = state;
+  corners.landmarks = {{-5.0, -5.0, 0.0}, {15.0, 15.0, 0.0}};
+  EXPECT_NEAR(Count(Decode(DrawGraphBeforeAfter(corners, corners, SquareEdges())), kGreen),
+              Count(image, kGreen), 20);
   state.landmarks[1].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT([&] { DrawGraphBeforeAfter(state, state, {}); },
               ThrowsMessage<Error>(HasSubstr("landmark 1 is not finite")));
