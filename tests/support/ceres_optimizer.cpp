@@ -119,7 +119,7 @@ ceres::Solver::Options SolverOptions(const CeresSettings& settings) {
   options.function_tolerance = settings.function_tolerance;
   options.gradient_tolerance = 0.0;
   options.parameter_tolerance = 0.0;
-  options.max_num_iterations = 200;
+  options.max_num_iterations = settings.max_iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   return options;

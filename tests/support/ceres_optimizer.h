@@ -14,6 +14,7 @@ struct CeresSettings {
   bool cx_sparse = false;     ///< CXSparse instead of SuiteSparse
   double trust_radius = 1e4;  ///< the default; larger: closer to Gauss-Newton
   double function_tolerance = 1e-6;
+  int max_iterations = 200;
 };
 
 /// Settings worth trying: all of them on one thread.
