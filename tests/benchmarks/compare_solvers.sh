@@ -47,10 +47,13 @@ OMP_THREAD_LIMIT=1 build/benchmark/tests/benchmarks/solver_benchmark --benchmark
       for (i = 1; i <= count; ++i) {
         key = order[i]
         if (is_growth[key]) continue
-        printf "| %s | %d | %d | %.6f | %.2f ms | %d | %.2f ms | %.0f MB | %.2f ms (%s) | %.0f MB" \
-               " | %.2f |\n", key, nodes[key], edges[key], error[key], ours[key], steps[key],
-               marginals[key], ours_memory[key], ceres[key], settings[key], ceres_memory[key],
-               ceres[key] ? ours[key] / ceres[key] : 0
+        beside = "does not get there | |"
+        if (key in ceres) {
+          beside = sprintf("%.2f ms (%s) | %.0f MB | %.2f", ceres[key], settings[key],
+                           ceres_memory[key], ours[key] / ceres[key])
+        }
+        printf "| %s | %d | %d | %s | %.2f ms | %d | %.2f ms | %.0f MB | %s |\n", key, nodes[key],
+               edges[key], error[key], ours[key], steps[key], marginals[key], ours_memory[key], beside
       }
       print ""
       print "| generated city | edges | time | memory |"
