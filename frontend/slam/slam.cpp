@@ -27,9 +27,8 @@ constexpr double kUnmatchedFactor = 4.0;  // of the odometry's covariance where 
 struct ScanEntry {
   double timestamp = 0.0;
   SE2 T_odom_robot;
-  int node = 0;
-  SE2 T_node_robot;
-  std::unique_ptr<PointScan> points;  // nodes refer to it
+  ScanPlace place;
+  std::shared_ptr<const PointScan> points;  // nodes refer to it
 };
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
@@ -53,13 +52,13 @@ class Slam::Impl {
     ScanEntry entry;
     entry.timestamp = observation.timestamp;
     entry.T_odom_robot = observation.T_odom_robot;
-    entry.points = std::make_unique<PointScan>(sensor_.Interpret(observation.scan));
+    entry.points = std::make_shared<const PointScan>(sensor_.Interpret(observation.scan));
     scans_.push_back(std::move(entry));
     ++statistics_.scans;
     if (nodes_.size() == 0) return AddFirstNode();
 
     TrackedScan result = Track(motion);
-    const SE2& step = scans_.back().T_node_robot;
+    const SE2& step = scans_.back().place.T_node_robot;
     if (step.translation().norm() >= options_.node_distance ||
         std::abs(step.theta()) >= options_.node_angle) {
       result.node = AddNode(result.T_map_robot, step, result.covariance);
@@ -84,14 +83,14 @@ class Slam::Impl {
   // by what the graph has changed between this node and the next.
   SE2 ScanPose(int scan) const {
     const ScanEntry& entry = scans_[Index(scan)];
-    const SE2& node = nodes_.pose(entry.node);
-    if (entry.node + 1 >= nodes_.size()) return node * entry.T_node_robot;
-    const int first = node_scans_[Index(entry.node)];
-    const int next = node_scans_[Index(entry.node + 1)];
+    const SE2& node = nodes_.pose(entry.place.node);
+    if (entry.place.node + 1 >= nodes_.size()) return node * entry.place.T_node_robot;
+    const int first = node_scans_[Index(entry.place.node)];
+    const int next = node_scans_[Index(entry.place.node + 1)];
     const double share = static_cast<double>(scan - first) / (next - first);
-    const SE2 change =
-        tracked_steps_[Index(entry.node)].Inverse() * nodes_.Between(entry.node, entry.node + 1);
-    return node * entry.T_node_robot * SE2::Exp(share * change.Log());
+    const SE2 change = tracked_steps_[Index(entry.place.node)].Inverse() *
+                       nodes_.Between(entry.place.node, entry.place.node + 1);
+    return node * entry.place.T_node_robot * SE2::Exp(share * change.Log());
   }
 
   SlamStatistics Statistics() const {
@@ -128,9 +127,10 @@ class Slam::Impl {
       ++statistics_.failed_matches;
       if (tracked.unusable) ++statistics_.unusable_scans;
     }
-    entry.node = nodes_.size() - 1;
-    entry.T_node_robot = nodes_.pose(entry.node).Inverse() * tracked.T_map_robot;
+    entry.place.node = nodes_.size() - 1;
+    entry.place.T_node_robot = nodes_.pose(entry.place.node).Inverse() * tracked.T_map_robot;
     TrackedScan result;
+    result.scan = static_cast<int>(scans_.size()) - 1;
     result.T_map_robot = tracked.T_map_robot;
     result.matched = tracked.matched;
     result.covariance = CovarianceSinceNode(tracked);
@@ -150,8 +150,8 @@ class Slam::Impl {
     if (node > 0) tracked_steps_.push_back(T_last_node);
     nodes_.scans.push_back(scans_.back().points.get());
     node_scans_.push_back(static_cast<int>(scans_.size()) - 1);
-    scans_.back().node = node;
-    scans_.back().T_node_robot = SE2();
+    scans_.back().place.node = node;
+    scans_.back().place.T_node_robot = SE2();
     motion_since_node_ = SE2();
     return node;
   }
@@ -228,6 +228,12 @@ std::span<const Eigen::Vector2f> Slam::scan_hits(int scan) const {
 
 std::span<const Eigen::Vector2f> Slam::scan_no_returns(int scan) const {
   return impl_->scans()[Index(scan)].points->no_returns;
+}
+
+ScanPlace Slam::scan_place(int scan) const { return impl_->scans()[Index(scan)].place; }
+
+std::shared_ptr<const PointScan> Slam::scan_points(int scan) const {
+  return impl_->scans()[Index(scan)].points;
 }
 
 SE2 Slam::scan_laser(int scan) const { return impl_->scans()[Index(scan)].points->T_robot_laser; }

@@ -7,19 +7,30 @@
 
 #include "backend/pose_graph.h"
 #include "frontend/log/observation.h"
+#include "frontend/matching/point_scan.h"
 #include "frontend/slam/closure_record.h"
 #include "frontend/slam/slam_options.h"
 
 namespace loopgrid {
 
-/// What the tracker made of one scan.
+/// What became of one scan.
 struct TrackedScan {
+  int scan = 0;     ///< its index, from 0
   SE2 T_map_robot;  ///< current best pose
-  /// Of the pose relative to the last node, order (x, y, theta).
+  /// Of that pose in the map, whose frame is that of the first node; robot frame, order
+  /// (x, y, theta).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  bool matched = false;    ///< false: the match failed and odometry carried the pose
-  int node = -1;           ///< index of the node this scan became, -1 if none
-  bool optimized = false;  ///< the graph was optimised; poses of older scans have moved
+  bool matched = false;       ///< false: the match failed and odometry carried the pose
+  bool localized = true;      ///< false: a new session has not found itself in the old map yet
+  int node = -1;              ///< index of the node this scan became, -1 if none
+  bool optimized = false;     ///< poses of older scans have moved
+  std::vector<int> closures;  ///< records of closures() that are new or have changed
+};
+
+/// Where a scan is in the graph.
+struct ScanPlace {
+  int node = 0;  ///< the node it belongs to
+  SE2 T_node_robot;
 };
 
 /// Seconds spent in each stage.
@@ -75,6 +86,11 @@ class Slam {
   std::span<const Eigen::Vector2f> scan_hits(int scan) const;
   std::span<const Eigen::Vector2f> scan_no_returns(int scan) const;  ///< unit vectors, robot frame
   SE2 scan_laser(int scan) const;                                    ///< T_robot_laser
+
+  ScanPlace scan_place(int scan) const;
+
+  /// The scan's points, for other threads to keep; null if it adds nothing to the map.
+  std::shared_ptr<const PointScan> scan_points(int scan) const;
 
   /// Every closure tried so far, in order.
   const std::vector<ClosureRecord>& closures() const;
