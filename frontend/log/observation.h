@@ -29,6 +29,7 @@ struct Observation {
   double timestamp = 0.0;  ///< seconds, as in the log; may run backwards
   SE2 T_odom_robot;        ///< wheel odometry at the scan
   LaserScan scan;
+  bool new_session = false;  ///< the robot may have been carried: it can be anywhere in the map
 };
 
 }  // namespace loopgrid
