@@ -18,8 +18,8 @@ struct ReceivedLine {
   std::chrono::steady_clock::time_point arrival;
 };
 
-/// Lines on their way from a source to the mapper, bounded in bytes. A full queue makes the source
-/// wait: it stops reading, and pipes and sockets slow their sender down. Nothing is dropped.
+/// Lines on their way from one source to one mapper, bounded in bytes. A full queue makes the
+/// source wait: it stops reading, and pipes and sockets slow their sender down. Nothing is dropped.
 class LineQueue {
  public:
   explicit LineQueue(std::size_t max_bytes = std::size_t{8} << 20);
@@ -30,12 +30,13 @@ class LineQueue {
   /// Waits for a line; false at the end: Close() was called and all lines are out.
   bool Pop(ReceivedLine* line);
 
-  /// No more lines come. Any thread may call it.
+  /// No more lines are taken; those in the queue can still be popped. The source calls it at its
+  /// end, and a mapper that gives up does, for the source may be waiting for room. Any thread may.
   void Close();
 
   struct Counters {
     std::int64_t lines = 0;         ///< pushed
-    std::int64_t bytes = 0;         ///< pushed
+    std::int64_t bytes = 0;         ///< pushed, of text
     std::int64_t waits = 0;         ///< how often the source had to wait
     std::size_t waiting_lines = 0;  ///< in the queue now
   };

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace loopgrid::test_support {
+
+/// Waits until a condition holds that other threads or processes bring about; false if it does not
+/// within a time that is far longer than it ever takes.
+template <typename Condition>
+bool WaitUntil(const Condition& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+}  // namespace loopgrid::test_support
