@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
@@ -26,11 +28,8 @@ std::uint8_t GreyOf(CellState state) {
   return kGreyUnknown;
 }
 
-// What the image shows: one unknown cell at the origin if there is nothing to show.
-CellBox ImageBox(const OccupancyGrid& grid) {
-  const CellBox seen = grid.SeenBox();
-  return seen.empty() ? CellBox{0, 0, 1, 1} : seen;
-}
+// What an image shows: one unknown cell at the origin if there is nothing to show.
+CellBox PicturedBox(const CellBox& seen) { return seen.empty() ? CellBox{0, 0, 1, 1} : seen; }
 
 std::string Encode(const GreyImage& image, const char* extension,
                    const std::vector<int>& parameters) {
@@ -44,24 +43,38 @@ std::string Encode(const GreyImage& image, const char* extension,
 
 }  // namespace
 
-GreyImage DrawMap(const OccupancyGrid& grid) {
-  const CellBox box = ImageBox(grid);
+MapPicture BlankMap(const CellBox& seen) {
+  const CellBox box = PicturedBox(seen);
   if (box.width() > kMaxSide || box.height() > kMaxSide) {
     throw Error(ErrorCode::kUsage,
                 fmt::format("a map image of {} x {} pixels is more than {} a side; take a coarser "
                             "resolution",
                             box.width(), box.height(), kMaxSide));
   }
-  GreyImage image{.width = static_cast<int>(box.width()),
-                  .height = static_cast<int>(box.height()),
-                  .pixels = {}};
-  image.pixels.reserve(static_cast<std::size_t>(box.width() * box.height()));
-  for (std::int64_t y = box.max_y - 1; y >= box.min_y; --y) {
-    for (std::int64_t x = box.min_x; x < box.max_x; ++x) {
-      image.pixels.push_back(GreyOf(grid.State(x, y)));
-    }
+  MapPicture picture{.image = {.width = static_cast<int>(box.width()),
+                               .height = static_cast<int>(box.height()),
+                               .pixels = {}},
+                     .box = box};
+  picture.image.pixels.resize(static_cast<std::size_t>(box.width() * box.height()), kGreyUnknown);
+  return picture;
+}
+
+std::vector<std::uint8_t> DrawCells(const OccupancyGrid& grid, const CellBox& box) {
+  std::vector<std::uint8_t> cells;
+  cells.reserve(static_cast<std::size_t>(box.width() * box.height()));
+  for (std::int64_t y = box.min_y; y < box.max_y; ++y) {
+    for (std::int64_t x = box.min_x; x < box.max_x; ++x) cells.push_back(GreyOf(grid.State(x, y)));
   }
-  return image;
+  return cells;
+}
+
+GreyImage DrawMap(const OccupancyGrid& grid) {
+  auto [image, box] = BlankMap(grid.SeenBox());
+  auto row = image.pixels.begin();
+  for (std::int64_t y = box.max_y - 1; y >= box.min_y; --y, row += box.width()) {
+    std::ranges::copy(DrawCells(grid, {box.min_x, y, box.max_x, y + 1}), row);
+  }
+  return std::move(image);
 }
 
 std::string EncodePng(const GreyImage& image) {
@@ -71,7 +84,10 @@ std::string EncodePng(const GreyImage& image) {
 std::string EncodePgm(const GreyImage& image) { return Encode(image, ".pgm", {}); }
 
 std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
-  const CellBox box = ImageBox(grid);
+  return MapYaml(PicturedBox(grid.SeenBox()), grid.resolution(), image_name);
+}
+
+std::string MapYaml(const CellBox& box, double resolution, std::string_view image_name) {
   return fmt::format(
       "image: {}\n"
       "resolution: {}\n"
@@ -79,8 +95,8 @@ std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
       "negate: 0\n"
       "occupied_thresh: 0.65\n"
       "free_thresh: 0.196\n",
-      image_name, grid.resolution(), static_cast<double>(box.min_x) * grid.resolution(),
-      static_cast<double>(box.min_y) * grid.resolution());
+      image_name, resolution, static_cast<double>(box.min_x) * resolution,
+      static_cast<double>(box.min_y) * resolution);
 }
 
 void WriteMapFiles(const OccupancyGrid& grid, const std::string& folder) {

@@ -22,9 +22,21 @@ struct GreyImage {
   std::vector<std::uint8_t> pixels;
 };
 
+/// A picture of a map, one pixel a cell, y upwards, and the cells that it shows.
+struct MapPicture {
+  GreyImage image;
+  CellBox box;
+};
+
+/// An unknown map that shows `seen`, or the cell at the origin if that is empty. Throws Error
+/// (kUsage) above 32,767 pixels a side (more than image files of every program take).
+MapPicture BlankMap(const CellBox& seen);
+
+/// The grey values of the cells of `box`, row-major, the first row has the smallest y.
+std::vector<std::uint8_t> DrawCells(const OccupancyGrid& grid, const CellBox& box);
+
 /// The grid cropped to what was seen; one pixel a cell, y upwards. A grid that has seen nothing
-/// gives one unknown pixel. Throws Error (kUsage) above 32,767 pixels a side (more than image files
-/// of every program take).
+/// gives one unknown pixel. Throws Error (kUsage) as BlankMap.
 GreyImage DrawMap(const OccupancyGrid& grid);
 
 /// The bytes of map.png and map.pgm: 8 bits, grey. The same image gives the same bytes.
@@ -34,6 +46,9 @@ std::string EncodePgm(const GreyImage& image);
 /// The text of map.yaml in the convention of ROS's map_server: `origin` is the lower left corner of
 /// the image in the map frame (metres, metres, radians).
 std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name);
+
+/// The same for a picture of the cells in `box`; `resolution` in metres.
+std::string MapYaml(const CellBox& box, double resolution, std::string_view image_name);
 
 /// Writes map.png, map.pgm and map.yaml into a folder that exists, each whole or not at all. Throws
 /// Error: kOutput if one cannot be written, kUsage as DrawMap.

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "mapping/map_files.h"
+#include "mapping/occupancy_grid.h"
+
+namespace loopgrid {
+
+/// Which square of the map: kTileSide pixels a side, each of 2^level cells. Its lower left corner
+/// is at (x, y) * kTileSide * 2^level cells, whatever the size of the map.
+struct TileId {
+  int level = 0;  ///< 0: a pixel a cell, up to kTileLevels - 1
+  int x = 0;
+  int y = 0;
+
+  auto operator<=>(const TileId&) const = default;
+};
+
+inline constexpr int kTileSide = 256;
+inline constexpr int kTileLevels = 6;
+
+/// A tile as it was after a certain change of the map.
+struct TileVersion {
+  TileId id;
+  std::uint64_t version = 0;
+};
+
+/// A map as pixels, cut into squares at several scales, so that who watches it fetches only what
+/// has changed. On coarser levels a pixel is a wall if any of its cells is one, else free if any
+/// is. Takes 1.4 bytes a cell where anything was seen, and the PNG of each tile that was asked for.
+/// All methods may be called from any thread.
+class MapTiles {
+ public:
+  /// Takes over the cells of `box`. The version of a tile rises if one of its pixels changes.
+  void Update(const OccupancyGrid& grid, const CellBox& box);
+
+  /// The number of changes so far; also the version of the tile that changed last. Starts at 0.
+  std::uint64_t version() const;
+
+  /// The tiles with a version above `version`, oldest change first.
+  std::vector<TileVersion> ChangedSince(std::uint64_t version) const;
+
+  /// The tile as PNG, 8 bits, grey, first row at the top; null if there is no such tile. Encoded
+  /// when asked for. Its version (or a later one) goes to `version` if that is not null.
+  std::shared_ptr<const std::string> Png(const TileId& id, std::uint64_t* version = nullptr) const;
+
+  /// The whole map as DrawMap() draws the grid. Throws Error (kUsage) as that does.
+  MapPicture Picture() const;
+
+ private:
+  // Row-major, the first row has the smallest y.
+  using Pixels = std::array<std::uint8_t, std::size_t{kTileSide} * kTileSide>;
+
+  struct Tile {
+    std::unique_ptr<Pixels> pixels;
+    std::uint64_t version = 0;
+    std::shared_ptr<const std::string> png;  // of this version; null if not encoded yet
+  };
+
+  Tile* FindOrAdd(const TileId& id);
+  bool TakeCells(const TileId& id, const CellBox& part, const std::vector<std::uint8_t>& cells);
+  bool ShrinkInto(const TileId& parent, const TileId& child);
+  void UpdateCoarserLevels(std::vector<TileId> changed);
+  CellBox SeenBox() const;
+
+  mutable std::mutex mutex_;
+  mutable std::map<TileId, Tile> tiles_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace loopgrid

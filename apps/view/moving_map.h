@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "frontend/matching/point_scan.h"
+#include "frontend/slam/slam.h"
+#include "mapping/occupancy_grid.h"
+
+namespace loopgrid {
+
+/// A scan for the map.
+struct ScanOnMap {
+  ScanPlace place;
+  SE2 T_map_robot;        ///< tells where the node is, if it is new
+  bool localized = true;  ///< false: its session may yet move as a whole; not drawn until then
+  std::shared_ptr<const PointScan> points;
+};
+
+/// An occupancy grid whose scans hang on the nodes of a graph. When nodes move, the scans are drawn
+/// anew, a few at a time, into a second grid; until that is complete the first one stays and still
+/// takes new scans. Needs 4 bytes a cell, twice that while it redraws, and some 100 bytes a scan
+/// beside its points, which are shared. One thread may use an object at a time.
+class MovingMap {
+ public:
+  /// Throws Error (kUsage) if the options are not valid.
+  explicit MovingMap(const OccupancyGridOptions& options = {});
+
+  /// Draws a scan and remembers it. One that does not fit into the grid is left out and counted.
+  void AddScan(const ScanOnMap& scan);
+
+  /// Where the nodes are now (T_map_node).
+  void MoveNodes(std::span<const SE2> poses);
+
+  /// Some nodes are no longer where they were drawn: half a cell off, or turned so far that
+  /// something ten metres away is.
+  bool IsOutdated() const { return outdated_; }
+
+  /// Begins to draw everything anew.
+  void StartRedraw();
+  bool IsRedrawing() const { return next_.has_value(); }
+
+  /// Draws the next `scans` scans; the last call brings the new picture.
+  void ContinueRedraw(std::size_t scans);
+
+  const OccupancyGrid& grid() const { return grid_; }
+
+  /// A box around all cells that may have changed since the last call.
+  CellBox TakeChanges();
+
+  std::size_t scans() const { return scans_.size(); }
+  std::int64_t left_out() const { return left_out_; }  ///< scans that did not fit
+
+ private:
+  struct Entry {
+    ScanPlace place;
+    std::shared_ptr<const PointScan> points;
+  };
+  struct Redraw {
+    OccupancyGrid grid;
+    std::vector<SE2> nodes;  // where they are drawn; those that come later are drawn where they are
+    CellBox extent;
+    std::size_t drawn = 0;  // scans
+    std::int64_t left_out = 0;
+  };
+
+  SE2& NodePose(const ScanOnMap& scan);
+  bool Draw(const Entry& entry, const SE2& T_map_node, OccupancyGrid* grid, CellBox* extent);
+  void FinishRedraw();
+  void CompareWithDrawn();
+
+  OccupancyGrid grid_;
+  std::vector<Entry> scans_;
+  std::vector<SE2> nodes_;        // T_map_node now
+  std::vector<SE2> drawn_nodes_;  // T_map_node that grid_ shows
+  std::size_t drawable_ = 0;      // scans whose session has found its place
+  std::optional<Redraw> next_;
+  CellBox extent_;  // of what grid_ shows
+  CellBox changes_;
+  bool outdated_ = false;
+  std::int64_t left_out_ = 0;
+};
+
+}  // namespace loopgrid
