@@ -1,14 +1,12 @@
 #include "apps/run_command.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <string>
 #include <system_error>
 
+#include "apps/finish_run.h"
 #include "apps/interrupt_watch.h"
 #include "apps/output_directory.h"
-#include "apps/peak_memory.h"
 #include "apps/progress_bar.h"
 #include "apps/report.h"
 #include "apps/run_outputs.h"
@@ -47,25 +45,6 @@ void MapLog(LogReader* log, Slam* slam, ProgressBar* bar, RunReport* report) {
   report->log = log->statistics();
 }
 
-void RequireScans(const RunReport& report) {
-  if (report.log.scans > 0) return;
-  std::string message = fmt::format("{}: no laser scan in it", report.options.log);
-  if (!report.log.first_problems.empty()) {
-    message += fmt::format(" ({} malformed lines, the first: {})", report.log.malformed,
-                           report.log.first_problems.front());
-  }
-  throw Error(ErrorCode::kInput, message);
-}
-
-void Describe(const Slam& slam, RunReport* report) {
-  report->slam = slam.statistics();
-  report->nodes = static_cast<int>(slam.graph().poses.size());
-  report->constraints = static_cast<int>(slam.graph().constraints.size());
-  for (const ClosureRecord& closure : slam.closures()) {
-    ++report->closures[ToString(closure.outcome)];
-  }
-}
-
 }  // namespace
 
 void RunCommand(const RunOptions& options) {
@@ -87,18 +66,8 @@ void RunCommand(const RunOptions& options) {
   ProgressBar bar(options.quiet);
   Slam slam(options.slam);
   MapLog(log.get(), &slam, &bar, &report);
-  RequireScans(report);
-  bar.ShowStage("optimising the graph");
-  slam.Finish();
-  Describe(slam, &report);
-
-  bar.ShowStage("drawing and writing");
-  WriteRunOutputs(options, slam, &outputs, &report);
-  report.total_seconds = stopwatch.seconds();
-  report.peak_memory_mb = PeakMemoryMb();
-  outputs.Write("report.json", FormatReportJson(report));
-  outputs.Commit();
-  bar.Clear();
+  RequireScans(options.log, report.log);
+  FinishRun(stopwatch, &slam, &outputs, &bar, &report);
   PrintToStandardOutput(FormatSummary(report));
 }
 

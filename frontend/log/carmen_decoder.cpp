@@ -23,6 +23,11 @@ void CarmenDecoder::AddLine(std::string_view line, bool terminated, bool too_lon
     case CarmenMeaning::kParameter:
       ++statistics_.parameters;
       break;
+    case CarmenMeaning::kNewSession:
+      Finish();
+      new_session_ = true;
+      ++statistics_.ignored;
+      break;
     case CarmenMeaning::kOtherLaser:
     case CarmenMeaning::kNothing:
       ++statistics_.ignored;
@@ -71,6 +76,7 @@ void CarmenDecoder::AddScan() {
     mount_.Add(message.T_odom_laser, message.T_odom_robot);
   }
   pending_.push_back({interpreter_.MakeObservation(), statistics_.lines});
+  pending_.back().observation.new_session = std::exchange(new_session_, false);
   if (mount_.decided()) SettleMounts();
 }
 

@@ -39,6 +39,9 @@ class CarmenDecoder {
   /// were taken so far, statistics() tells; it is more than that for scans that were held back.
   std::int64_t observation_line() const { return observation_line_; }
 
+  /// Whether there are scans that Next() has not given out yet.
+  bool holds_scans() const { return !pending_.empty(); }
+
   const LogStatistics& statistics() const { return statistics_; }
 
  private:
@@ -60,6 +63,7 @@ class CarmenDecoder {
   std::deque<Pending> pending_;
   std::size_t settled_ = 0;  // how many of them have their mount
   std::int64_t observation_line_ = 0;
+  bool new_session_ = false;  // the next scan is the first of one
 };
 
 }  // namespace loopgrid

@@ -7,6 +7,7 @@ CarmenMeaning CarmenInterpreter::Read(std::string_view line, bool terminated) {
   const CarmenTag tag = TagOf(line);
   if (IsLaser(tag)) return ReadLaser(line);
   if (tag == CarmenTag::kOdom) return ReadOdometry(line);
+  if (line == kNewSessionLine) return CarmenMeaning::kNewSession;
   if (tag != CarmenTag::kParam) return CarmenMeaning::kNothing;
   bool known = false;
   problem_ = parameters_.Apply(line, &known);

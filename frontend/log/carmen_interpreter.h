@@ -10,13 +10,17 @@
 
 namespace loopgrid {
 
+/// The comment line that says: what follows was recorded later, the robot may have been carried.
+inline constexpr std::string_view kNewSessionLine = "# loopgrid new-session";
+
 /// What a line of a CARMEN log means for a mapper.
 enum class CarmenMeaning {
   kScan,        ///< a scan of the laser in use
   kOtherLaser,  ///< a scan of a laser that is not used because a better one is there
   kOdometry,
   kParameter,
-  kNothing,  ///< comments, blank lines, SYNC and all other tags
+  kNewSession,  ///< kNewSessionLine
+  kNothing,     ///< comments, blank lines, SYNC and all other tags
   kMalformed,
 };
 

@@ -147,6 +147,34 @@ TEST(CarmenDecoder, CountsLinesThatAreTooLongOrCutShort) {
   EXPECT_EQ(decoder.statistics().first_problems[2], "log: is gone");
 }
 
+TEST(CarmenDecoder, MarksTheFirstScanOfASession) {
+  CarmenDecoder decoder("log");
+  std::vector<bool> first;
+  const auto add = [&](const char* line) {
+    decoder.AddLine(line);
+    Observation observation;
+    while (decoder.Next(&observation)) first.push_back(observation.new_session);
+  };
+  add("PARAM robot_frontlaser_offset 0.25 nohost 0");
+  add("FLASER 1 5 1.3 0 0 1 0 0 7 nohost 7");
+  add("# loopgrid new-session");
+  add("ODOM 1 2 0.5 0 0 0 9 nohost 9");
+  add("FLASER 1 5 1.3 0 0 1 0 0 7 nohost 7");
+  add("FLASER 1 5 1.3 0 0 1 0 0 7 nohost 7");
+  EXPECT_THAT(first, ElementsAre(false, true, false));
+}
+
+TEST(CarmenDecoder, GivesOutTheScansOfASessionBeforeTheNextBegins) {
+  CarmenDecoder decoder("log");
+  Observation observation;
+  decoder.AddLine("FLASER 1 5 1.3 0 0 1 0 0 7 nohost 7");
+  EXPECT_FALSE(decoder.Next(&observation));
+  EXPECT_TRUE(decoder.holds_scans());
+  decoder.AddLine("# loopgrid new-session");
+  EXPECT_TRUE(decoder.Next(&observation));
+  EXPECT_FALSE(decoder.holds_scans());
+}
+
 TEST(CarmenDecoder, StrictModeRefusesEachOfThem) {
   LogReaderOptions options;
   options.strict = true;

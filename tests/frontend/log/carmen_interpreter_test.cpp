@@ -24,6 +24,8 @@ TEST(CarmenInterpreter, TellsTheLinesApart) {
   CarmenInterpreter interpreter;
   EXPECT_EQ(Read(&interpreter, "# FLASER"), CarmenMeaning::kNothing);
   EXPECT_EQ(Read(&interpreter, ""), CarmenMeaning::kNothing);
+  EXPECT_EQ(Read(&interpreter, "# loopgrid new-session"), CarmenMeaning::kNewSession);
+  EXPECT_EQ(Read(&interpreter, "# loopgrid new-sessions"), CarmenMeaning::kNothing);
   EXPECT_EQ(Read(&interpreter, "SYNC x 0 nohost 0"), CarmenMeaning::kNothing);
   EXPECT_EQ(Read(&interpreter, "PARAM robot_width 0.5 nohost 0"), CarmenMeaning::kNothing);
   EXPECT_EQ(Read(&interpreter, "PARAM robot_frontlaser_offset 0.5"), CarmenMeaning::kParameter);
