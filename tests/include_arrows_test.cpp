@@ -53,6 +53,7 @@ const std::vector<Confinement>& Confinements() {
       {"amd.h", {"backend/"}, false},
       {"metis.h", {"backend/"}, false},
       {"cholmod.h", {"tests/"}, false},
+      {"boost/", {"apps/", "tests/"}, false},
       {"CLI/", {"apps/", "tests/"}, true},
       {"nlohmann/", {"apps/", "tests/"}, true},
       {"ceres/", {"tests/"}, true},

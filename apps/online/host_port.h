@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace loopgrid {
+
+/// One end of a TCP connection.
+struct HostPort {
+  std::string host;  ///< a name, or an IPv4 or IPv6 address (without brackets)
+  int port = 0;      ///< 0: any that is free
+};
+
+/// Reads `HOST:PORT`, an IPv6 address in brackets. Throws Error (kUsage) for anything else.
+HostPort ParseHostPort(std::string_view text);
+
+/// As ParseHostPort() reads it.
+std::string ToString(const HostPort& address);
+
+/// Whether a host can be nothing but this machine, seen from this machine: `localhost` or a
+/// loopback address. Other names are not looked up: they are not.
+bool IsLoopback(const std::string& host);
+
+}  // namespace loopgrid
