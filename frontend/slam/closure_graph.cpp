@@ -27,18 +27,37 @@ OptimizerOptions AtTheEnd() {
 
 }  // namespace
 
+Eigen::Matrix3d ComposeCovariances(const Eigen::Matrix3d& first, const SE2& step,
+                                   const Eigen::Matrix3d& second) {
+  const Eigen::Matrix3d A = step.Inverse().Adjoint();
+  return A * first * A.transpose() + second;
+}
+
 ClosureGraph::ClosureGraph() : optimizer_(WhileGrowing()) {}
 
-void ClosureGraph::AddNode(const SE2& T_map_node, const SE2& T_last_node,
-                           const Eigen::Matrix3d& covariance) {
+void ClosureGraph::AddNode(const SE2& T_map_node, const SE2& T_parent_node,
+                           const Eigen::Matrix3d& covariance, int parent) {
   const int node = size();
-  graph_.poses.push_back(T_map_node);
   if (node == 0) {
+    graph_.poses.push_back(T_map_node);
     covariances_.assign(1, Eigen::Matrix3d::Zero());
+    map_covariances_.assign(1, Eigen::Matrix3d::Zero());
     return;
   }
-  graph_.constraints.push_back({node - 1, node, T_last_node, covariance.inverse(), false});
+  if (parent < 0) parent = node - 1;
+  if (parent != node - 1) UpdateCovariances(&optimizer_, parent);
+  graph_.poses.push_back(T_map_node);
+  graph_.constraints.push_back({parent, node, T_parent_node, covariance.inverse(), false});
   ExtendRelativeCovariances(graph_, graph_.constraints.back(), &covariances_);
+  map_covariances_.push_back(ComposeCovariances(map_covariances_[static_cast<std::size_t>(parent)],
+                                                T_parent_node, covariance));
+}
+
+void ClosureGraph::MoveNodes(int first, const SE2& motion) {
+  for (int k = first; k < size(); ++k) {
+    SE2& pose = graph_.poses[static_cast<std::size_t>(k)];
+    pose = motion * pose;
+  }
 }
 
 double ClosureGraph::Chi2(const Constraint<SE2>& constraint) const {
@@ -83,13 +102,14 @@ bool ClosureGraph::TryClosures(std::span<const Constraint<SE2>> closures,
     optimizer_.Optimize(&graph_);
   }
   if (removed != nullptr) *removed = std::move(contradicted);
-  UpdateCovariances(&optimizer_);
+  UpdateCovariances(&optimizer_, size() - 1);
   return true;
 }
 
-void ClosureGraph::UpdateCovariances(Optimizer<SE2>* optimizer) {
+void ClosureGraph::UpdateCovariances(Optimizer<SE2>* optimizer, int relative_to) {
   if (const std::optional<Marginals<SE2>> marginals = optimizer->ComputeMarginals(graph_)) {
-    covariances_ = marginals->RelativeTo(size() - 1);
+    covariances_ = marginals->RelativeTo(relative_to);
+    map_covariances_ = marginals->covariances();
   }
 }
 
@@ -110,7 +130,7 @@ std::vector<Constraint<SE2>> ClosureGraph::Settle(std::span<const Constraint<SE2
     graph_.constraints.erase(kept, graph_.constraints.end());
     optimizer.Optimize(&graph_);
   }
-  UpdateCovariances(&optimizer);
+  UpdateCovariances(&optimizer, size() - 1);
   return removed;
 }
 

@@ -9,6 +9,11 @@
 
 namespace loopgrid {
 
+/// Covariance of a pose known to `first`, followed by a step known to `second`, each in the frame
+/// of its end, order (x, y, theta); the result is in the frame of the step's end.
+Eigen::Matrix3d ComposeCovariances(const Eigen::Matrix3d& first, const SE2& step,
+                                   const Eigen::Matrix3d& second);
+
 /// The pose graph as SLAM grows it: a chain of nodes, and closures that are believed only as long
 /// as the rest of the graph lets them. Knows no scans.
 class ClosureGraph {
@@ -18,9 +23,13 @@ class ClosureGraph {
   const PoseGraph<SE2>& graph() const { return graph_; }
   int size() const { return static_cast<int>(graph_.poses.size()); }
 
-  /// Adds a node at `T_map_node`, joined to the last one by what `T_last_node` (with `covariance`,
-  /// frame of the new node) says. The first node takes no constraint.
-  void AddNode(const SE2& T_map_node, const SE2& T_last_node, const Eigen::Matrix3d& covariance);
+  /// Adds a node at `T_map_node`, joined to `parent` (-1: the last one) by what `T_parent_node`
+  /// (with `covariance`, frame of the new node) says. The first node takes no constraint.
+  void AddNode(const SE2& T_map_node, const SE2& T_parent_node, const Eigen::Matrix3d& covariance,
+               int parent = -1);
+
+  /// Moves all nodes from `first` on by the same motion of the map frame.
+  void MoveNodes(int first, const SE2& motion);
 
   /// Adds closures and optimises. As long as that leaves some closure, old or new, off by more than
   /// kMaxChi2, the worst goes out again; old ones only while fewer than the new ones that stay. If
@@ -36,6 +45,9 @@ class ClosureGraph {
   /// Covariance of every node relative to the last one, each in its own frame.
   const std::vector<Eigen::Matrix3d>& relative_covariances() const { return covariances_; }
 
+  /// Covariance of every node relative to the first one, each in its own frame.
+  const std::vector<Eigen::Matrix3d>& map_covariances() const { return map_covariances_; }
+
   /// chi-square e^T Omega e of a constraint at the present poses.
   double Chi2(const Constraint<SE2>& constraint) const;
 
@@ -44,11 +56,12 @@ class ClosureGraph {
  private:
   // Index of the constraint of the closure that is off the most, -1 if none is off too much.
   int WorstClosure() const;
-  void UpdateCovariances(Optimizer<SE2>* optimizer);
+  void UpdateCovariances(Optimizer<SE2>* optimizer, int relative_to);
 
   PoseGraph<SE2> graph_;
   Optimizer<SE2> optimizer_;
   std::vector<Eigen::Matrix3d> covariances_;
+  std::vector<Eigen::Matrix3d> map_covariances_;
 };
 
 }  // namespace loopgrid

@@ -77,7 +77,7 @@ std::vector<ClosureCandidate> LoopCloser::FindCandidates(
   // Of the consecutive nodes of one pass the likeliest, of those the nearest.
   std::vector<ClosureCandidate> passes;
   int last_hit = -1 - options_.same_pass;
-  for (int j = 0; j <= last_old; ++j) {
+  for (int j = localized_ ? 0 : session_; j <= last_old; ++j) {
     std::optional<ClosureCandidate> candidate =
         Gate(nodes.Between(j, newest), covariances[static_cast<std::size_t>(j)]);
     if (!candidate) continue;
@@ -135,16 +135,35 @@ void LoopCloser::Try(const Nodes& nodes, double timestamp, const ClosureCandidat
   record.to = newest;
   record.timestamp = timestamp;
   record.distance_sigmas = candidate.distance_sigmas;
+  Record(match, record);
+}
+
+void LoopCloser::TryEverywhere(const Nodes& nodes, double timestamp) {
+  const int newest = nodes.size() - 1;
+  const int age = newest - session_;
+  if (age > options_.eager_nodes && age % options_.later_node_steps != 0) return;
+  if (!finder_) finder_.emplace(nodes, session_, options_.place_finder);
+  const std::optional<FoundPlace> found = finder_->Find(
+      nodes.scan(newest), Surroundings(nodes, options_.surroundings_path), options_.matcher);
+  if (!found) return;
+  ClosureRecord record;
+  record.from = found->node;
+  record.to = newest;
+  record.timestamp = timestamp;
+  Record(found->match, record);
+}
+
+void LoopCloser::Record(const ClosureMatch& match, ClosureRecord record) {
   record.score = match.score;
   record.second_score = match.second_score;
   record.T_from_to = match.T_map_robot;
   record.covariance = match.covariance;
   record.denied_share = match.denied_share;
   record.outcome = Judge(match);
-  if (record.outcome == ClosureOutcome::kPending) {
-    pool_.push_back(static_cast<int>(records_.size()));
-  }
+  const int index = static_cast<int>(records_.size());
+  if (record.outcome == ClosureOutcome::kPending) pool_.push_back(index);
   records_.push_back(record);
+  changed_.insert(index);
 }
 
 double LoopCloser::Agreement(const Nodes& nodes, const ClosureRecord& a,
@@ -165,9 +184,11 @@ double LoopCloser::Agreement(const Nodes& nodes, const ClosureRecord& a,
 std::vector<int> LoopCloser::Verify(const Nodes& nodes) {
   const int newest = nodes.size() - 1;
   std::erase_if(pool_, [&](int index) {
-    ClosureRecord& old = record(index);
+    const ClosureRecord& old = record(index);
     if (newest - old.to <= options_.horizon_nodes) return false;
-    if (old.outcome == ClosureOutcome::kPending) old.outcome = ClosureOutcome::kInconsistent;
+    if (old.outcome == ClosureOutcome::kPending) {
+      Change(index).outcome = ClosureOutcome::kInconsistent;
+    }
     return true;
   });
   const int n = static_cast<int>(pool_.size());
@@ -202,13 +223,14 @@ std::vector<int> LoopCloser::Close(const Nodes& nodes, double timestamp,
   for (const ClosureCandidate& candidate : FindCandidates(nodes, covariances)) {
     Try(nodes, timestamp, candidate);
   }
+  if (!localized_) TryEverywhere(nodes, timestamp);
   if (pool_.size() == before) return {};
   return Verify(nodes);
 }
 
 void LoopCloser::Decide(const std::vector<int>& believed, bool kept) {
   for (int index : believed) {
-    record(index).outcome = kept ? ClosureOutcome::kAccepted : ClosureOutcome::kRejected;
+    Change(index).outcome = kept ? ClosureOutcome::kAccepted : ClosureOutcome::kRejected;
   }
   if (kept) return;
   std::erase_if(pool_, [&](int index) {
@@ -216,33 +238,55 @@ void LoopCloser::Decide(const std::vector<int>& believed, bool kept) {
   });
 }
 
-ClosureRecord* LoopCloser::FindAccepted(int from, int to) {
+ClosureRecord& LoopCloser::Change(int index) {
+  changed_.insert(index);
+  return records_[static_cast<std::size_t>(index)];
+}
+
+std::optional<int> LoopCloser::FindAccepted(int from, int to) const {
   // Records are in the order of their newer node.
   const auto first = std::lower_bound(records_.begin(), records_.end(), to,
                                       [](const ClosureRecord& r, int node) { return r.to < node; });
   for (auto it = first; it != records_.end() && it->to == to; ++it) {
     const bool in_graph =
         it->outcome == ClosureOutcome::kAccepted || it->outcome == ClosureOutcome::kPending;
-    if (it->from == from && in_graph) return &*it;
+    if (it->from == from && in_graph) return static_cast<int>(it - records_.begin());
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 void LoopCloser::Reject(int from, int to) {
-  if (ClosureRecord* found = FindAccepted(from, to)) found->outcome = ClosureOutcome::kRejected;
+  if (const auto found = FindAccepted(from, to)) {
+    Change(*found).outcome = ClosureOutcome::kRejected;
+  }
 }
 
 void LoopCloser::SetChi2(int from, int to, double chi2) {
-  if (ClosureRecord* found = FindAccepted(from, to)) found->chi2 = chi2;
+  const auto found = FindAccepted(from, to);
+  if (found && record(*found).chi2 != chi2) Change(*found).chi2 = chi2;
 }
 
-void LoopCloser::Finish() {
+void LoopCloser::StartSession(int first_node) {
+  ExpirePending();
+  session_ = first_node;
+  localized_ = false;
+  finder_.reset();
+}
+
+void LoopCloser::SetLocalized() {
+  localized_ = true;
+  finder_.reset();
+}
+
+void LoopCloser::ExpirePending() {
   for (int index : pool_) {
     if (record(index).outcome == ClosureOutcome::kPending) {
-      record(index).outcome = ClosureOutcome::kInconsistent;
+      Change(index).outcome = ClosureOutcome::kInconsistent;
     }
   }
   pool_.clear();
 }
+
+void LoopCloser::Finish() { ExpirePending(); }
 
 }  // namespace loopgrid

@@ -2,11 +2,14 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "frontend/slam/closure_matcher.h"
 #include "frontend/slam/closure_record.h"
 #include "frontend/slam/nodes.h"
+#include "frontend/slam/place_finder.h"
 
 namespace loopgrid {
 
@@ -31,6 +34,9 @@ struct LoopCloserOptions {
   double min_agreeing_path = 1.0;  ///< ... and must have been made over this much travel, metres
   double min_separation = 2.0;     ///< of the consistent set, see ConsistentSet
   int horizon_nodes = 20;          ///< hypotheses this many nodes old no longer count
+  PlaceFinderOptions place_finder;
+  int eager_nodes = 40;      ///< of a session that are all looked for in the whole map ...
+  int later_node_steps = 4;  ///< ... and how many of them make one step later
 };
 
 /// Where an old place may be seen again.
@@ -59,20 +65,34 @@ class LoopCloser {
   void Reject(int from, int to);
   void SetChi2(int from, int to, double chi2);
 
+  /// The nodes from `first_node` on may be anywhere in the map of those before: they are looked for
+  /// in all of it until SetLocalized().
+  void StartSession(int first_node);
+  void SetLocalized();
+  bool localized() const { return localized_; }
+  int session() const { return session_; }  ///< first node of the latest session
+
   /// Ends the run: what is still pending found no company.
   void Finish();
+
+  /// Indices of the records that are new or have changed since the last call, in order.
+  std::set<int> TakeChanged() { return std::exchange(changed_, {}); }
 
   const std::vector<ClosureRecord>& records() const { return records_; }
 
  private:
-  ClosureRecord& record(int index) { return records_[static_cast<std::size_t>(index)]; }
-  ClosureRecord* FindAccepted(int from, int to);
+  const ClosureRecord& record(int index) const { return records_[static_cast<std::size_t>(index)]; }
+  ClosureRecord& Change(int index);
+  std::optional<int> FindAccepted(int from, int to) const;
   std::optional<ClosureCandidate> Gate(const SE2& T_old_newest,
                                        const Eigen::Matrix3d& covariance) const;
   std::vector<ClosureCandidate> FindCandidates(
       const Nodes& nodes, const std::vector<Eigen::Matrix3d>& covariances) const;
   ClosureOutcome Judge(const ClosureMatch& match) const;
   void Try(const Nodes& nodes, double timestamp, const ClosureCandidate& candidate);
+  void TryEverywhere(const Nodes& nodes, double timestamp);
+  void Record(const ClosureMatch& match, ClosureRecord record);
+  void ExpirePending();
   std::vector<Eigen::Vector2f> Surroundings(const Nodes& nodes, double path) const;
   double Agreement(const Nodes& nodes, const ClosureRecord& a, const ClosureRecord& b) const;
   std::vector<int> Verify(const Nodes& nodes);
@@ -80,6 +100,10 @@ class LoopCloser {
   LoopCloserOptions options_;
   std::vector<ClosureRecord> records_;
   std::vector<int> pool_;  // indices of recent records that are pending or accepted
+  std::set<int> changed_;
+  int session_ = 0;
+  bool localized_ = true;
+  std::optional<PlaceFinder> finder_;  // while the session is not localized
 };
 
 }  // namespace loopgrid

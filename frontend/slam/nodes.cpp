@@ -5,6 +5,7 @@
 namespace loopgrid {
 
 double Nodes::StepLength(int node) const {
+  if (const auto gap = gaps.find(node + 1); gap != gaps.end()) return gap->second;
   return (pose(node + 1).translation() - pose(node).translation()).norm();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "backend/pose_graph.h"
@@ -18,6 +19,8 @@ struct NodeRange {
 struct Nodes {
   const PoseGraph<SE2>* graph = nullptr;
   std::vector<const PointScan*> scans;
+  /// Metres travelled from the node before to those that are not joined to it.
+  std::map<int, double> gaps;
 
   int size() const { return static_cast<int>(scans.size()); }
   const SE2& pose(int node) const { return graph->poses[static_cast<std::size_t>(node)]; }
@@ -26,7 +29,7 @@ struct Nodes {
   /// Pose of `b` in the frame of `a`.
   SE2 Between(int a, int b) const { return pose(a).Inverse() * pose(b); }
 
-  /// Distance from `node` to the next one, metres.
+  /// Length of the way from `node` to the next one, metres.
   double StepLength(int node) const;
 
   /// Length of the path along the nodes from `a` to `b`, metres.

@@ -45,6 +45,7 @@ struct SlamStatistics {
   std::int64_t scans = 0;
   std::int64_t failed_matches = 0;  ///< scans carried by odometry alone
   std::int64_t unusable_scans = 0;  ///< scans with too few returns to match
+  std::int64_t known_scans = 0;     ///< scans in known space: no nodes, no part of the map
   double error_before = 0.0;        ///< F of the final constraints at the odometry poses
   double error_after = 0.0;         ///< F of the final constraints at the final poses
   SlamTimes times;
@@ -95,8 +96,9 @@ class Slam {
   /// Every closure tried so far, in order.
   const std::vector<ClosureRecord>& closures() const;
 
-  /// Covariance of every node relative to the last one: the diagonal blocks of the inverse of the
-  /// reduced Hessian, in each node's own frame, order (x, y, theta). The last one's is zero.
+  /// As of the last optimisation: covariance of every node relative to the last one then: the
+  /// diagonal blocks of the inverse of the reduced Hessian, in each node's own frame, order (x, y,
+  /// theta). The last one's is zero.
   std::vector<Eigen::Matrix3d> NodeCovariances() const;
 
   SlamStatistics statistics() const;

@@ -20,6 +20,7 @@ void RequireBetween(const char* field, double value, double low, double high) {
 void SlamOptions::Validate() const {
   RequireBetween("node_distance", node_distance, 0.05, 10.0);
   RequireBetween("node_angle", node_angle, 0.05, 3.0);
+  RequireBetween("threads", threads, 1, 1024);
 }
 
 }  // namespace loopgrid

@@ -102,6 +102,7 @@ TrackedPose Tracker::Refine(const PointScan& scan, std::span<const Eigen::Vector
   TrackedPose result;
   result.score = found.score;
   const RefinedMatch match = RefineMatch(map_, scan, found.T_map_robot, prior, options_.refiner);
+  result.inlier_share = match.inlier_share;
   if (match.inlier_share < min_inlier_share) return result;
   result.T_map_robot = match.T_map_robot;
   result.covariance = MatchCovariance(*table_, points, match);

@@ -31,8 +31,9 @@ struct TrackedPose {
   SE2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the match, robot frame
   bool matched = false;
-  bool unusable = false;  ///< too few hits to match
-  double score = 0.0;     ///< of the correlative search, 0..1
+  bool unusable = false;      ///< too few hits to match
+  double score = 0.0;         ///< of the correlative search, 0..1
+  double inlier_share = 0.0;  ///< of the refined match, 0..1
 };
 
 /// Follows the robot from scan to scan: correlative search around the odometry's prediction in a
