@@ -35,9 +35,11 @@ std::optional<FoundPlace> PlaceFinder::Find(const PointScan& scan,
                                             std::span<const Eigen::Vector2f> surroundings,
                                             const ClosureMatcherOptions& options) const {
   const SearchWindow window{options_.half_width, options_.half_width, std::numbers::pi};
+  ClosureMatcherOptions limits = options;
   ClosureMatch best;
   for (const SE2& center : centers_) {
-    const ClosureMatch match = MatchClosure(map_, scan, surroundings, center, window, options);
+    limits.min_score = std::max(options.min_score, options_.min_share * best.score);
+    const ClosureMatch match = MatchClosure(map_, scan, surroundings, center, window, limits);
     if (!match.found) continue;
     const bool better = !best.found || match.score > best.score;
     const ClosureMatch& lesser = better ? best : match;

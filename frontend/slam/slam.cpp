@@ -227,7 +227,9 @@ class Slam::Impl {
   void AddNode(NewNode node, TrackedScan* result) {
     const int index = NodeCount();
     const int parent = node.parent;
-    origins_.push_back({parent, node.T_parent_node, reference_scan_});
+    // No scan is on the way to where the robot was carried.
+    const int first_scan = node.new_session ? result->scan : reference_scan_;
+    origins_.push_back({parent, node.T_parent_node, first_scan});
     pending_.push_back({index, node.covariance, steps_ + kClosingLag});
     Append(pending_.back());
     node_scans_.push_back(result->scan);
