@@ -3,7 +3,7 @@
 namespace loopgrid {
 
 CarmenMeaning CarmenInterpreter::Read(std::string_view line, bool terminated) {
-  if (!terminated) line = line.substr(0, line.find_last_of(" \t") + 1);
+  if (!terminated) line = WithoutCutField(line);
   const CarmenTag tag = TagOf(line);
   if (IsLaser(tag)) return ReadLaser(line);
   if (tag == CarmenTag::kOdom) return ReadOdometry(line);

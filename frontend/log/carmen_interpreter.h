@@ -13,6 +13,11 @@ namespace loopgrid {
 /// The comment line that says: what follows was recorded later, the robot may have been carried.
 inline constexpr std::string_view kNewSessionLine = "# loopgrid new-session";
 
+/// A line that broke off without its last field, which may have been cut short.
+inline std::string_view WithoutCutField(std::string_view line) {
+  return line.substr(0, line.find_last_of(" \t") + 1);
+}
+
 /// What a line of a CARMEN log means for a mapper.
 enum class CarmenMeaning {
   kScan,        ///< a scan of the laser in use
