@@ -30,7 +30,8 @@ OptimizerOptions AtTheEnd() {
 Eigen::Matrix3d ComposeCovariances(const Eigen::Matrix3d& first, const SE2& step,
                                    const Eigen::Matrix3d& second) {
   const Eigen::Matrix3d A = step.Inverse().Adjoint();
-  return A * first * A.transpose() + second;
+  const Eigen::Matrix3d sum = A * first * A.transpose() + second;
+  return 0.5 * (sum + sum.transpose());  // symmetric to the last bit
 }
 
 ClosureGraph::ClosureGraph() : optimizer_(WhileGrowing()) {}

@@ -30,6 +30,7 @@ struct ClosureRecord {
       0.0;                    ///< of the old node from the pose before the match, see gate_sigmas
   double score = 0.0;         ///< match score, 0..1; 0 where none came near the least one
   double second_score = 0.0;  ///< best score of a separate peak, 0..1; 0 where none is near
+  double inlier_share = 0.0;  ///< of the scan's hits, those near a surface, 0..1
   double denied_share = 0.0;  ///< of the walls in view, those that beams would have gone through
   SE2 T_from_to;              ///< measured pose of `to` in `from`
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_from_to, order (x, y, theta)

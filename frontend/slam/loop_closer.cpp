@@ -158,6 +158,7 @@ void LoopCloser::Record(const ClosureMatch& match, ClosureRecord record) {
   record.second_score = match.second_score;
   record.T_from_to = match.T_map_robot;
   record.covariance = match.covariance;
+  record.inlier_share = match.inlier_share;
   record.denied_share = match.denied_share;
   record.outcome = Judge(match);
   const int index = static_cast<int>(records_.size());
@@ -192,7 +193,8 @@ std::vector<int> LoopCloser::Verify(const Nodes& nodes) {
     return true;
   });
   const int n = static_cast<int>(pool_.size());
-  if (n < options_.min_agreeing) return {};
+  const int least = localized_ ? options_.min_agreeing : options_.min_agreeing_anywhere;
+  if (n < least) return {};
   Eigen::MatrixXd agreement = Eigen::MatrixXd::Identity(n, n);
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < i; ++k) {
@@ -202,7 +204,7 @@ std::vector<int> LoopCloser::Verify(const Nodes& nodes) {
     }
   }
   const ConsistentSet set = FindConsistentSet(agreement);
-  if (static_cast<int>(set.members.size()) < options_.min_agreeing) return {};
+  if (static_cast<int>(set.members.size()) < least) return {};
   if (set.separation < options_.min_separation) return {};
   int first = std::numeric_limits<int>::max();
   int last = 0;

@@ -35,8 +35,9 @@ struct LoopCloserOptions {
   double min_separation = 2.0;     ///< of the consistent set, see ConsistentSet
   int horizon_nodes = 20;          ///< hypotheses this many nodes old no longer count
   PlaceFinderOptions place_finder;
-  int eager_nodes = 40;      ///< of a session that are all looked for in the whole map ...
-  int later_node_steps = 4;  ///< ... and how many of them make one step later
+  int min_agreeing_anywhere = 4;  ///< as min_agreeing, for a robot that may be anywhere
+  int eager_nodes = 40;           ///< of a session that are all looked for in the whole map ...
+  int later_node_steps = 4;       ///< ... and how many of them make one step later
 };
 
 /// Where an old place may be seen again.

@@ -36,9 +36,10 @@ std::optional<FoundPlace> PlaceFinder::Find(const PointScan& scan,
                                             const ClosureMatcherOptions& options) const {
   const SearchWindow window{options_.half_width, options_.half_width, std::numbers::pi};
   ClosureMatcherOptions limits = options;
+  limits.min_inlier_share = options_.min_inlier_share;
   ClosureMatch best;
   for (const SE2& center : centers_) {
-    limits.min_score = std::max(options.min_score, options_.min_share * best.score);
+    limits.min_score = std::max(options_.min_score, options_.min_share * best.score);
     const ClosureMatch match = MatchClosure(map_, scan, surroundings, center, window, limits);
     if (!match.found) continue;
     const bool better = !best.found || match.score > best.score;

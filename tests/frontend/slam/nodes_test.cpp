@@ -69,6 +69,17 @@ TEST_F(NodesOnALine, BetweenIsThePoseOfTheSecondInTheFirst) {
   EXPECT_DOUBLE_EQ(nodes().Between(3, 1).x(), -2.5);
 }
 
+TEST(Nodes, AGapIsAsLongAsItIsSaidToBe) {
+  test_support::Walk walk;
+  for (int i = 0; i < 4; ++i) walk.Add(SE2(1.0, 0.0, 0.0), PointScan());
+  Nodes nodes = walk.nodes();
+  nodes.gaps[2] = 7.5;  // the robot came to node 2 on another way than from node 1
+  EXPECT_DOUBLE_EQ(nodes.StepLength(1), 7.5);
+  EXPECT_DOUBLE_EQ(nodes.StepLength(2), 1.0);
+  EXPECT_DOUBLE_EQ(nodes.PathLength(0, 3), 9.5);
+  EXPECT_EQ(nodes.Around(3, 5.0).first, 2);
+}
+
 TEST(Nodes, MapOfTurnsWithItsOrigin) {
   test_support::Walk walk;
   PointScan scan;

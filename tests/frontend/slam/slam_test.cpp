@@ -164,10 +164,12 @@ TEST(Slam, TellsOfEachScanWhatBecameOfIt) {
   EXPECT_TRUE(slam.NodeCovariances().back().isZero(0.0));
 }
 
-TEST(Slam, DoesTheSameInEveryRun) {
+TEST(Slam, DoesTheSameInEveryRunOnOneThreadOrTwo) {
   const SimulatedRun run = RoomRun();
+  SlamOptions single;
+  single.threads = 1;
   Slam first;
-  Slam second;
+  Slam second(single);
   AddAll(run, &first);
   AddAll(run, &second);
   ExpectSameBits(first, second);
@@ -287,6 +289,11 @@ TEST(SlamOptions, NamesTheFieldThatIsOutOfRange) {
     SlamOptions options;
     options.node_angle = value;
     expect_refused(options, "node_angle");
+  }
+  for (int value : {0, -1, 1025}) {
+    SlamOptions options;
+    options.threads = value;
+    expect_refused(options, "threads");
   }
   for (double value : {0.05, 3.0}) {
     SlamOptions options;

@@ -1,0 +1,116 @@
+#include "frontend/slam/closing_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "tests/frontend/slam/walk.h"
+
+namespace loopgrid {
+namespace {
+
+using test_support::kNodesARound;
+
+// Twice round the room, with the truth as odometry.
+std::vector<NewNode> RoundNodes() {
+  const std::vector<SE2> truth = test_support::RoundWalk(2 * kNodesARound);
+  std::vector<NewNode> nodes;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    NewNode node;
+    node.parent = static_cast<int>(i) - 1;
+    node.T_parent_node = i == 0 ? truth[0] : truth[i - 1].Inverse() * truth[i];
+    node.covariance = Eigen::Vector3d(4e-4, 4e-4, 4e-5).asDiagonal();
+    node.timestamp = static_cast<double>(i);
+    node.scan = std::make_shared<const PointScan>(test_support::ScanFrom(
+        test_support::DistinctiveRoom(), truth[i], {}, static_cast<std::uint32_t>(i)));
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+void ExpectSameNews(const ClosingNews& a, const ClosingNews& b) {
+  ASSERT_EQ(a.records.size(), b.records.size());
+  for (std::size_t i = 0; i < a.records.size(); ++i) {
+    EXPECT_EQ(a.records[i].first, b.records[i].first);
+    EXPECT_EQ(a.records[i].second.outcome, b.records[i].second.outcome);
+    EXPECT_EQ(a.records[i].second.T_from_to.coordinates(),
+              b.records[i].second.T_from_to.coordinates());
+  }
+  EXPECT_EQ(a.localized, b.localized);
+  ASSERT_EQ(a.optimized.has_value(), b.optimized.has_value());
+  if (!a.optimized) return;
+  ASSERT_EQ(a.optimized->graph.poses.size(), b.optimized->graph.poses.size());
+  for (std::size_t k = 0; k < a.optimized->graph.poses.size(); ++k) {
+    EXPECT_EQ(a.optimized->graph.poses[k].coordinates(), b.optimized->graph.poses[k].coordinates());
+  }
+  EXPECT_EQ(a.optimized->relative_covariances, b.optimized->relative_covariances);
+  EXPECT_EQ(a.optimized->map_covariances, b.optimized->map_covariances);
+}
+
+TEST(ClosingQueue, GivesTheSameNewsWithAndWithoutAThreadHoweverLateTheyAreTaken) {
+  const std::vector<NewNode> nodes = RoundNodes();
+  LoopClosing reference;
+  ClosingQueue threaded(true);
+  ClosingQueue deferred(false);
+  std::vector<ClosingNews> expected;
+  for (const NewNode& node : nodes) {
+    expected.push_back(reference.Add(node));
+    threaded.Submit(node);
+    deferred.Submit(node);
+    if (threaded.size() < 7) continue;
+    const ClosingNews& oldest = expected[expected.size() - 7];
+    ExpectSameNews(threaded.Take(), oldest);
+    ExpectSameNews(deferred.Take(), oldest);
+  }
+  EXPECT_EQ(threaded.size(), 6);
+  while (threaded.size() > 0) {
+    const ClosingNews& oldest =
+        expected[expected.size() - static_cast<std::size_t>(threaded.size())];
+    ExpectSameNews(threaded.Take(), oldest);
+    ExpectSameNews(deferred.Take(), oldest);
+  }
+  const ClosingNews last = reference.Finish();
+  ASSERT_TRUE(last.optimized);
+  ExpectSameNews(threaded.Finish(), last);
+  ExpectSameNews(deferred.Finish(), last);
+  // There was something to compare.
+  EXPECT_TRUE(std::any_of(expected.begin(), expected.end(),
+                          [](const ClosingNews& news) { return news.optimized.has_value(); }));
+}
+
+TEST(ClosingQueue, EndsWithWorkLeftOver) {
+  const std::vector<NewNode> nodes = RoundNodes();
+  for (bool threaded : {true, false}) {
+    ClosingQueue queue(threaded);
+    for (const NewNode& node : nodes) queue.Submit(node);
+    EXPECT_EQ(queue.size(), static_cast<int>(nodes.size()));
+  }
+}
+
+TEST(LoopClosing, TellsOfEachRecordWhatItHasBecome) {
+  LoopClosing closing;
+  std::vector<ClosureRecord> told;
+  const auto listen = [&told](const ClosingNews& news) {
+    for (const auto& [index, record] : news.records) {
+      const auto place = static_cast<std::size_t>(index);
+      ASSERT_LE(place, told.size());  // in order, none left out
+      if (place == told.size()) told.emplace_back();
+      told[place] = record;
+    }
+  };
+  for (const NewNode& node : RoundNodes()) listen(closing.Add(node));
+  listen(closing.Finish());
+  ASSERT_FALSE(told.empty());
+  int accepted = 0;
+  for (const ClosureRecord& record : told) {
+    EXPECT_NE(record.outcome, ClosureOutcome::kPending);
+    accepted += record.outcome == ClosureOutcome::kAccepted ? 1 : 0;
+  }
+  EXPECT_GE(accepted, 3);
+}
+
+}  // namespace
+}  // namespace loopgrid
