@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/online/online_update.h"
+#include "apps/view/map_tiles.h"
+
+namespace loopgrid {
+
+/// What a viewer knows: pose, graph, closures, counters. Turns updates into server-sent events, the
+/// text that goes over the wire. All covariances in it are in the map frame. One thread may use an
+/// object at a time.
+class ViewState {
+ public:
+  /// `run` tells one run of the program from another; `resolution` is that of the map, metres.
+  ViewState(std::string run, double resolution);
+
+  void Apply(const OnlineUpdate& update);
+
+  /// Nothing more will come.
+  void End() { ended_ = true; }
+
+  /// Events that lead from the state at the last call to this one, the tiles beside it; empty if
+  /// nothing has changed. Nodes that have moved are held back unless `with_moved_nodes`: they are
+  /// many. Of the poses only the newest 64 are told.
+  std::string TakeChanges(const std::vector<TileVersion>& tiles, bool with_moved_nodes);
+
+  /// One event with everything, for a viewer that knows nothing.
+  std::string Snapshot(const std::vector<TileVersion>& tiles) const;
+
+  const std::string& run() const { return run_; }
+
+ private:
+  struct Node {
+    SE2 pose;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // in the node's own frame
+    bool linked = false;                                   // reached from the one before
+  };
+  struct Closure {
+    std::int64_t id = 0;  // in order of appearance
+    ClosureRecord record;
+  };
+  using NodePair = std::pair<int, int>;
+
+  static std::string PoseJson(const OnlineUpdate& update);
+  void AddNode(const SE2& pose);
+  void TakeNodes(const NodeStates& states);
+  void TakeClosure(const ClosureRecord& record);
+  std::string NodesJson(std::size_t first) const;
+  std::string CountersJson() const;
+
+  std::string run_;
+  double resolution_;
+  bool ended_ = false;
+  bool end_told_ = false;
+
+  std::deque<std::string> poses_;  // JSON, not told yet
+  std::string last_pose_;          // JSON, empty if there was none
+
+  std::vector<Node> nodes_;
+  std::size_t nodes_told_ = 0;
+  bool nodes_moved_ = false;
+
+  std::map<NodePair, Closure> closures_;
+  std::set<NodePair> changed_closures_;  // not told yet
+  std::deque<NodePair> refused_;         // oldest first
+  std::int64_t next_closure_ = 0;
+  std::map<ClosureOutcome, std::int64_t> outcomes_;  // of all closures ever tried
+
+  std::int64_t scans_ = 0;
+  std::int64_t unmatched_ = 0;
+};
+
+}  // namespace loopgrid
