@@ -1,0 +1,114 @@
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "apps/online/descriptor.h"
+
+namespace loopgrid::test_support {
+
+inline sockaddr_in LoopbackAddress(int port) {
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+/// One end of a TCP connection on loopback, by plain system calls, to do what no decent client
+/// does.
+class Socket {
+ public:
+  explicit Socket(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
+
+  static Socket ConnectTo(int port) {
+    Socket result(Descriptor(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)));
+    const sockaddr_in address = LoopbackAddress(port);
+    if (connect(result.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      throw std::runtime_error("cannot connect to port " + std::to_string(port));
+    }
+    return result;
+  }
+
+  int get() const { return descriptor_.get(); }
+
+  /// False if the other end does not want it.
+  bool Send(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t count = send(get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (count <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
+
+  /// Sends what it can without waiting; bytes sent.
+  std::size_t SendWithoutWaiting(std::string_view bytes) const {
+    const ssize_t count = send(get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+
+  /// Says that no more will be sent, but stays.
+  void CloseHalf() const { shutdown(get(), SHUT_WR); }
+
+  /// Leaves with a reset instead of a good-bye.
+  void Reset() {
+    const linger at_once = {1, 0};
+    setsockopt(get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+    descriptor_ = Descriptor();
+  }
+
+  /// Waits until the other end has closed the connection; false if it does not.
+  bool WaitForEnd() const {
+    std::array<char, 4096> ignored;
+    pollfd waiting = {get(), POLLIN, 0};
+    while (poll(&waiting, 1, 60'000) > 0) {
+      if (recv(get(), ignored.data(), ignored.size(), 0) <= 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  Descriptor descriptor_;
+};
+
+/// A port on loopback that listens.
+class Listener {
+ public:
+  explicit Listener(int port = 0) : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    const int on = 1;
+    setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    sockaddr_in address = LoopbackAddress(port);
+    socklen_t size = sizeof address;
+    auto* generic = reinterpret_cast<sockaddr*>(&address);
+    if (bind(socket_.get(), generic, size) != 0 || listen(socket_.get(), 100) != 0 ||
+        getsockname(socket_.get(), generic, &size) != 0) {
+      throw std::runtime_error("cannot listen");
+    }
+    port_ = ntohs(address.sin_port);
+  }
+
+  int port() const { return port_; }
+
+  Socket Accept() const {
+    pollfd waiting = {socket_.get(), POLLIN, 0};
+    if (poll(&waiting, 1, 60'000) <= 0) throw std::runtime_error("nobody connects");
+    return Socket(Descriptor(accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC)));
+  }
+
+ private:
+  Descriptor socket_;
+  int port_ = 0;
+};
+
+}  // namespace loopgrid::test_support
