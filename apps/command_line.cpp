@@ -27,6 +27,7 @@ CLI::Option* RequireName(CLI::Option* option) {
 
 Command ParseCommandLine(int argc, const char* const* argv) {
   RunOptions run;
+  OnlineOptions online;
   EvalOptions eval;
   OptimizeOptions optimize;
   PlotOptions plot;
@@ -39,6 +40,7 @@ Command ParseCommandLine(int argc, const char* const* argv) {
                  kExitStatus);
   program.require_subcommand(1);
   AddRun(&program, &run);
+  AddOnline(&program, &online);
   AddEval(&program, &eval);
   AddOptimize(&program, &optimize);
   AddPlot(&program, &plot);
@@ -52,6 +54,7 @@ Command ParseCommandLine(int argc, const char* const* argv) {
     throw Error(ErrorCode::kUsage, fmt::format("{} (see loopgrid --help)", error.what()));
   }
   if (program.got_subcommand("run")) return run;
+  if (program.got_subcommand("online")) return online;
   if (program.got_subcommand("optimize")) return optimize;
   if (program.got_subcommand("plot")) return plot;
   return eval;

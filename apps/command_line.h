@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "apps/eval_command.h"
+#include "apps/online/online_options.h"
 #include "apps/optimize_options.h"
 #include "apps/plot_command.h"
 #include "apps/run_options.h"
@@ -15,7 +16,8 @@ struct Answer {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, EvalOptions, OptimizeOptions, PlotOptions, Answer>;
+using Command =
+    std::variant<RunOptions, OnlineOptions, EvalOptions, OptimizeOptions, PlotOptions, Answer>;
 
 /// What the arguments ask for. Throws Error (kUsage) if they make no sense.
 Command ParseCommandLine(int argc, const char* const* argv);

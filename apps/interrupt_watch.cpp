@@ -19,7 +19,8 @@ bool IsIgnored(int signal) {
 
 }  // namespace
 
-InterruptWatch::InterruptWatch(std::function<void()> clean_up) : clean_up_(std::move(clean_up)) {
+InterruptWatch::InterruptWatch(std::vector<std::function<void()>> handlers)
+    : handlers_(std::move(handlers)) {
   sigemptyset(&watched_);
   sigaddset(&watched_, kWake);
   for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -39,11 +40,15 @@ InterruptWatch::~InterruptWatch() {
 
 void InterruptWatch::Watch() {
   int signal = 0;
-  if (sigwait(&watched_, &signal) != 0 || stopping_) return;
-  // From here on another one kills. kWake does not: the destructor may be sending it just now.
-  sigdelset(&watched_, kWake);
-  pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
-  clean_up_();
+  for (const auto& handle : handlers_) {
+    if (sigwait(&watched_, &signal) != 0 || stopping_) return;
+    if (&handle == &handlers_.back()) {
+      // From here on another one kills. kWake does not: the destructor may be sending it just now.
+      sigdelset(&watched_, kWake);
+      pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
+    }
+    handle();
+  }
   _exit(128 + signal);
 }
 

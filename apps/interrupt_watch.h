@@ -4,16 +4,24 @@
 #include <csignal>
 #include <functional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace loopgrid {
 
-/// While one of these lives, SIGINT, SIGTERM and SIGHUP call `clean_up` on a thread of its own,
-/// whatever the rest of the program is busy with, and then end the program with 128 + the signal's
-/// number. A second signal during `clean_up` kills at once. Signals that whoever started the
-/// program ignores (nohup, background jobs) stay ignored. Make it before any other thread.
+/// While one of these lives, SIGINT, SIGTERM and SIGHUP call the handlers on a thread of its own,
+/// whatever the rest of the program is busy with: the first signal the first handler, and so on.
+/// After the last one the program ends with 128 + the signal's number; a further signal while that
+/// one is at work kills at once. Signals that whoever started the program ignores (nohup,
+/// background jobs) stay ignored. Make it before any other thread.
 class InterruptWatch {
  public:
-  explicit InterruptWatch(std::function<void()> clean_up);
+  /// At least one handler.
+  explicit InterruptWatch(std::vector<std::function<void()>> handlers);
+
+  /// The program ends at the first signal, after `clean_up`.
+  explicit InterruptWatch(std::function<void()> clean_up)
+      : InterruptWatch(std::vector{std::move(clean_up)}) {}
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
@@ -21,7 +29,7 @@ class InterruptWatch {
  private:
   void Watch();
 
-  std::function<void()> clean_up_;
+  std::vector<std::function<void()>> handlers_;
   sigset_t watched_;
   sigset_t mask_before_;
   std::atomic<bool> stopping_ = false;

@@ -11,6 +11,7 @@
 
 #include "apps/command_line.h"
 #include "apps/eval_command.h"
+#include "apps/online/online_command.h"
 #include "apps/optimize_command.h"
 #include "apps/plot_command.h"
 #include "apps/run_command.h"
@@ -43,6 +44,7 @@ void OccupyStandardStreams() {
 }
 
 void Execute(const RunOptions& options) { RunCommand(options); }
+void Execute(const OnlineOptions& options) { OnlineCommand(options); }
 void Execute(const EvalOptions& options) { EvalCommand(options); }
 void Execute(const OptimizeOptions& options) { OptimizeCommand(options); }
 void Execute(const PlotOptions& options) { PlotCommand(options); }

@@ -19,6 +19,26 @@ constexpr const char* kRunFooter =
 
 }  // namespace
 
+void AddMapping(CLI::App* command, RunOptions* options) {
+  command->add_option("--resolution", options->resolution, "Side of a map cell, 0.01 to 1 metres")
+      ->capture_default_str()
+      ->type_name("METRES");
+  command
+      ->add_option("--node-distance", options->slam.node_distance,
+                   "A new node of the graph after this much travel, 0.05 to 10 metres")
+      ->capture_default_str()
+      ->type_name("METRES");
+  command
+      ->add_option("--node-angle", options->slam.node_angle,
+                   "... or after this much turning, 0.05 to 3 radians")
+      ->capture_default_str()
+      ->type_name("RADIANS");
+  command->add_flag("--strict", options->strict,
+                    "Stop at the first malformed line of the log [default: skip and count them]");
+  command->add_flag("--quiet", options->quiet,
+                    "No progress bar [default: one if standard error is a terminal]");
+}
+
 void AddRun(CLI::App* program, RunOptions* options) {
   CLI::App* run = program->add_subcommand("run", "Make a map of a log");
   run->add_option("LOG", options->log,
@@ -28,21 +48,7 @@ void AddRun(CLI::App* program, RunOptions* options) {
   run->add_option("--out", options->out, "Folder to write to; made if it is not there")
       ->required()
       ->type_name("DIR");
-  run->add_option("--resolution", options->resolution, "Side of a map cell, 0.01 to 1 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  run->add_option("--node-distance", options->slam.node_distance,
-                  "A new node of the graph after this much travel, 0.05 to 10 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  run->add_option("--node-angle", options->slam.node_angle,
-                  "... or after this much turning, 0.05 to 3 radians")
-      ->capture_default_str()
-      ->type_name("RADIANS");
-  run->add_flag("--strict", options->strict,
-                "Stop at the first malformed line of the log [default: skip and count them]");
-  run->add_flag("--quiet", options->quiet,
-                "No progress bar [default: one if standard error is a terminal]");
+  AddMapping(run, options);
   run->footer(kRunFooter);
 }
 

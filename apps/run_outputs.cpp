@@ -8,7 +8,6 @@
 #include "apps/stopwatch.h"
 #include "backend/graph_file.h"
 #include "frontend/log/corrected_log.h"
-#include "frontend/log/tum_file.h"
 #include "mapping/graph_drawing.h"
 #include "mapping/map_files.h"
 #include "mapping/occupancy_grid.h"
@@ -92,14 +91,6 @@ void WriteDrawings(const Slam& slam, const std::vector<SE2>& poses, OutputDirect
                  DrawUncertainty(nodes_after, slam.NodeCovariances(), &map_after));
 }
 
-Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses) {
-  Trajectory trajectory;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    trajectory.push_back({slam.scan_timestamp(static_cast<int>(i)), poses[i]});
-  }
-  return trajectory;
-}
-
 std::vector<CorrectedScan> CorrectScans(const Slam& slam, const std::vector<SE2>& poses) {
   std::vector<CorrectedScan> scans;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -124,6 +115,14 @@ void WriteRecords(const std::string& log, const Slam& slam, const std::vector<SE
 std::vector<std::string> RunOutputNames() {
   return {"map.png",   "map.pgm",      "map.yaml",  "trajectory.tum",  "corrected.clf",
           "graph.g2o", "closures.csv", "graph.png", "uncertainty.png", "report.json"};
+}
+
+Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    trajectory.push_back({slam.scan_timestamp(static_cast<int>(i)), poses[i]});
+  }
+  return trajectory;
 }
 
 void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,

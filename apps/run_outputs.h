@@ -6,6 +6,7 @@
 #include "apps/output_directory.h"
 #include "apps/report.h"
 #include "apps/run_options.h"
+#include "frontend/log/tum_file.h"
 #include "frontend/slam/slam.h"
 
 namespace loopgrid {
@@ -13,7 +14,10 @@ namespace loopgrid {
 /// The names of all files that a run leaves.
 std::vector<std::string> RunOutputNames();
 
-/// Writes them, all but report.json, and notes in `report` what there is to tell about them.
+/// The poses of a run's scans with their times.
+Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses);
+
+/// Writes the files, all but report.json, and notes in `report` what there is to tell about them.
 /// Throws Error.
 void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
                      RunReport* report);

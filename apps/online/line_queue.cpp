@@ -31,6 +31,11 @@ bool LineQueue::Push(ReceivedLine line) {
   return true;
 }
 
+bool LineQueue::Wait(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  return news_.wait_for(lock, patience, [this] { return closed_ || !lines_.empty(); });
+}
+
 bool LineQueue::Pop(ReceivedLine* line) {
   std::unique_lock lock(mutex_);
   news_.wait(lock, [this] { return closed_ || !lines_.empty(); });

@@ -27,6 +27,9 @@ class LineQueue {
   /// Waits for room; false once the queue is closed. For the source's thread.
   bool Push(ReceivedLine line);
 
+  /// Waits until Pop() need not wait; false if that took longer than `patience`.
+  bool Wait(std::chrono::milliseconds patience);
+
   /// Waits for a line; false at the end: Close() was called and all lines are out.
   bool Pop(ReceivedLine* line);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct NodeStates {
 /// What one scan has changed, as values: what the mapping thread hands to all that show or write.
 struct OnlineUpdate {
   TrackedScan tracked;
+  std::int64_t line = 0;                    ///< of the journal, from 1: where the scan stands
   double timestamp = 0.0;                   ///< of the scan, as in the log, seconds
   double latency_seconds = 0.0;             ///< from the arrival of its line to its pose
   ScanPlace place;                          ///< of the scan

@@ -40,17 +40,18 @@ Trajectory ReadTumFile(const std::string& path) {
   return trajectory;
 }
 
-void WriteTumFile(const std::string& path, const Trajectory& trajectory) {
-  AtomicFile file(path);
-  std::string line;
+std::string FormatTum(const Trajectory& trajectory) {
+  std::string text;
   for (const auto& [timestamp, pose] : trajectory) {
-    line.clear();
-    fmt::format_to(std::back_inserter(line), "{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n",
+    fmt::format_to(std::back_inserter(text), "{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n",
                    timestamp, pose.x(), pose.y(), std::sin(pose.theta() / 2.0),
                    std::cos(pose.theta() / 2.0));
-    file.Append(line);
   }
-  file.Commit();
+  return text;
+}
+
+void WriteTumFile(const std::string& path, const Trajectory& trajectory) {
+  WriteFileAtomically(path, FormatTum(trajectory));
 }
 
 }  // namespace loopgrid

@@ -21,7 +21,10 @@ using Trajectory = std::vector<StampedPose>;
 /// Error (kInput) `file:line: ...` for any other line, and for a file without a pose.
 Trajectory ReadTumFile(const std::string& path);
 
-/// Writes a planar trajectory in that format, whole or not at all. Throws Error (kOutput).
+/// A planar trajectory in that format.
+std::string FormatTum(const Trajectory& trajectory);
+
+/// Writes it to a file, whole or not at all. Throws Error (kOutput).
 void WriteTumFile(const std::string& path, const Trajectory& trajectory);
 
 }  // namespace loopgrid

@@ -1,0 +1,71 @@
+#include "apps/online/live_outputs.h"
+
+#include <utility>
+
+#include "apps/run_outputs.h"
+
+namespace loopgrid {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenStatuses(250);
+
+LiveMapOptions MapOptions(const OnlineOptions& options) {
+  LiveMapOptions map;
+  map.grid.resolution = options.run.resolution;
+  return map;
+}
+
+}  // namespace
+
+LiveOutputs::LiveOutputs(const OnlineOptions& options, const LineSource* source,
+                         const LineQueue* queue, EventWriter* events)
+    : source_(source),
+      queue_(queue),
+      events_(events),
+      map_(MapOptions(options)),
+      refresher_(
+          std::make_unique<Refresher>(options.run.out, options.interval, &map_, &published_)) {
+  status_.source = source_->name();
+}
+
+LiveOutputs::~LiveOutputs() = default;
+
+void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
+  map_.Add(update);
+  ++status_.scans;
+  if (update.tracked.node >= 0) ++status_.nodes;
+  if (!update.tracked.matched) ++status_.unmatched;
+  status_.localized = update.tracked.localized;
+  if (is_new) status_.latency.Add(update.latency_seconds);
+}
+
+void LiveOutputs::Tick(OnlineMapper* mapper) {
+  if (const auto scans = refresher_->TakeSaved()) events_->Saved(*scans);
+  if (status_.scans > refreshed_scans_ && refresher_->IsDue()) Refresh(*mapper->slam());
+  if (Clock::now() >= next_status_) PublishStatus(mapper);
+  events_->Flush();
+}
+
+void LiveOutputs::StopRefreshing() { refresher_.reset(); }
+
+void LiveOutputs::Refresh(const Slam& slam) {
+  refreshed_scans_ = status_.scans;
+  refresher_->Refresh({.trajectory = StampPoses(slam, slam.ScanPoses()), .graph = slam.graph()});
+}
+
+void LiveOutputs::PublishStatus(OnlineMapper* mapper) {
+  next_status_ = Clock::now() + kBetweenStatuses;
+  SourceCounters counters = source_->counters();
+  if (counters.last_problem != status_.counters.last_problem) {
+    events_->Warning(source_->name() + ": " + counters.last_problem);
+  }
+  status_.counters = std::move(counters);
+  status_.queue = queue_->counters();
+  status_.log = mapper->log();
+  status_.constraints = std::ssize(mapper->slam()->graph().constraints);
+  status_.closures_tried = std::ssize(mapper->slam()->closures());
+  status_.closures_accepted = mapper->accepted_closures();
+  published_.Put("status.json", std::make_shared<const std::string>(FormatStatus(status_)));
+}
+
+}  // namespace loopgrid

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "apps/online/event_writer.h"
+#include "apps/online/line_queue.h"
+#include "apps/online/line_source.h"
+#include "apps/online/online_mapper.h"
+#include "apps/online/online_options.h"
+#include "apps/online/online_status.h"
+#include "apps/online/published_files.h"
+#include "apps/online/refresher.h"
+#include "apps/view/live_map.h"
+
+namespace loopgrid {
+
+/// What shows the map while it grows: the files that are refreshed, the page, the status. For the
+/// mapping thread, which it never holds up for long.
+class LiveOutputs {
+ public:
+  /// Throws Error (kInput) if the page's address cannot be had.
+  LiveOutputs(const OnlineOptions& options, const LineSource* source, const LineQueue* queue,
+              EventWriter* events);
+  ~LiveOutputs();
+
+  /// Takes a scan. `is_new`: it came just now, not out of the journal.
+  void Add(const OnlineUpdate& update, bool is_new);
+
+  /// To be called often. Throws Error (kOutput) if the files could not be refreshed.
+  void Tick(OnlineMapper* mapper);
+
+  /// Files are not refreshed any more.
+  void StopRefreshing();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void Refresh(const Slam& slam);
+  void PublishStatus(OnlineMapper* mapper);
+
+  const LineSource* source_;
+  const LineQueue* queue_;
+  EventWriter* events_;
+  PublishedFiles published_;
+  LiveMap map_;
+  std::unique_ptr<Refresher> refresher_;
+  OnlineStatus status_;
+  std::int64_t refreshed_scans_ = 0;
+  Clock::time_point next_status_ = Clock::now();
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,167 @@
+#include "apps/online/online_command.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "apps/finish_run.h"
+#include "apps/interrupt_watch.h"
+#include "apps/online/connect_source.h"
+#include "apps/online/follow_source.h"
+#include "apps/online/host_port.h"
+#include "apps/online/listen_source.h"
+#include "apps/online/live_outputs.h"
+#include "apps/online/online_session.h"
+#include "apps/online/pipe_source.h"
+#include "apps/online/session_folder.h"
+#include "apps/output_directory.h"
+#include "apps/progress_bar.h"
+#include "apps/report.h"
+#include "apps/run_outputs.h"
+#include "apps/standard_output.h"
+#include "apps/stopwatch.h"
+#include "backend/base/atomic_file.h"
+
+namespace loopgrid {
+namespace {
+
+void Note(const std::string& text) { std::fprintf(stderr, "loopgrid: %s\n", text.c_str()); }
+
+std::unique_ptr<LineSource> OpenListenSource(const OnlineOptions& options) {
+  const HostPort address = ParseHostPort(options.listen);
+  auto source = std::make_unique<ListenSource>(
+      ListenOptions{.address = address, .end_with_sender = options.once});
+  if (!IsLoopback(address.host)) {
+    Note("WARNING: " + source->name() + " is open to other machines: whoever can reach it can " +
+         "send scans");
+  }
+  return source;
+}
+
+std::unique_ptr<LineSource> OpenSource(const OnlineOptions& options) {
+  if (!options.follow.empty()) return std::make_unique<FollowSource>(options.follow);
+  if (!options.listen.empty()) return OpenListenSource(options);
+  if (!options.connect.empty()) {
+    return std::make_unique<ConnectSource>(
+        ConnectOptions{.address = ParseHostPort(options.connect), .end_with_sender = options.once});
+  }
+  return std::make_unique<PipeSource>(STDIN_FILENO, "standard input");
+}
+
+/// Runs a source on a thread of its own.
+class SourceThread {
+ public:
+  SourceThread(LineSource* source, LineQueue* queue)
+      : source_(source), queue_(queue), thread_([this] { Run(); }) {}
+
+  ~SourceThread() {
+    queue_->Close();
+    source_->Stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  /// Waits for its end; throws what it ended with.
+  void Join() {
+    thread_.join();
+    if (problem_) std::rethrow_exception(problem_);
+  }
+
+ private:
+  void Run() {
+    try {
+      source_->Run(queue_);
+    } catch (...) {
+      problem_ = std::current_exception();
+    }
+  }
+
+  LineSource* source_;
+  LineQueue* queue_;
+  std::exception_ptr problem_;
+  std::thread thread_;
+};
+
+/// Maps what comes until the end of the stream.
+void MapStream(LineQueue* queue, OnlineSession* session, LiveOutputs* live, ProgressBar* bar) {
+  constexpr std::chrono::milliseconds kIdle(50);
+  ReceivedLine line;
+  while (true) {
+    live->Tick(session->mapper());
+    bar->Update(0.0, session->mapper()->log().scans);
+    if (!queue->Wait(kIdle)) continue;
+    if (!queue->Pop(&line)) return;
+    session->Add(std::move(line));
+  }
+}
+
+RunReport ReportOn(const RunOptions& options, const OnlineMapper& mapper) {
+  RunReport report;
+  report.options = options;
+  report.log = mapper.log();
+  report.data_seconds = mapper.data_seconds();
+  return report;
+}
+
+void PrintSummary(const OnlineOptions& options, const RunReport& report) {
+  const std::string summary = FormatSummary(report);
+  if (options.events == "-") {
+    std::fputs(summary.c_str(), stderr);
+  } else {
+    PrintToStandardOutput(summary);
+  }
+}
+
+}  // namespace
+
+void OnlineCommand(OnlineOptions options) {
+  const Stopwatch stopwatch;
+  options.Validate();
+  const bool resumed = !options.resume.empty();
+  if (resumed) options.run.out = options.resume;
+  options.run.slam.threads = options.threads;
+  const std::unique_ptr<LineSource> source = OpenSource(options);
+  OutputDirectory outputs(options.run.out, RunOutputNames());
+  std::atomic<bool> stopped = false;
+  const auto stop = [&] {
+    stopped = true;
+    source->Stop();
+  };
+  const auto clean_up = [&outputs] {
+    outputs.Discard();
+    AtomicFile::RemoveTemporaries();
+  };
+  const InterruptWatch watch({stop, clean_up});
+
+  SessionFolder folder(&options, &outputs);
+  EventWriter events = options.events.empty() ? EventWriter() : EventWriter(options.events);
+  LineQueue queue;
+  LiveOutputs live(options, source.get(), &queue, &events);
+  events.Start(options, source->name());
+  events.Flush();
+  ProgressBar bar(options.run.quiet);
+  OnlineSession session(
+      options.run, folder.journal(), &events,
+      [&live](const OnlineUpdate& update, bool is_new) { live.Add(update, is_new); });
+  session.Replay(resumed);
+
+  SourceThread reading(source.get(), &queue);
+  MapStream(&queue, &session, &live, &bar);
+  session.End();
+  RequireScans(source->name(), session.mapper()->log());
+  live.StopRefreshing();
+  folder.journal()->Sync();
+  RunReport report = ReportOn(options.run, *session.mapper());
+  FinishRun(stopwatch, session.mapper()->slam(), &outputs, &bar, &report);
+  events.End(report.log.lines, report.log.scans, stopped);
+  events.Flush();
+  PrintSummary(options, report);
+  reading.Join();
+}
+
+}  // namespace loopgrid

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "apps/run_options.h"
+
+namespace loopgrid {
+
+/// What `loopgrid online` is asked to do.
+struct OnlineOptions {
+  // Where the lines come from: one of these, or standard input.
+  std::string follow;   ///< a file that is being written
+  std::string listen;   ///< HOST:PORT to wait for senders at
+  std::string connect;  ///< HOST:PORT of a sender
+
+  bool once = false;      ///< a socket's first sender is the only one
+  RunOptions run;         ///< run.out is the session's folder; run.log is set to its journal
+  std::string resume;     ///< the folder of a session to go on with
+  std::string continued;  ///< the folder of a session whose map the new one goes on with
+  std::string view;       ///< [HOST:]PORT of the page
+  std::string events;     ///< file for the events, `-`: standard output
+  double interval = 5.0;  ///< seconds between two refreshes of the files
+  int threads = 1;        ///< 1: the mapper does everything in one thread
+
+  /// Which options that decide the result were given; the others come from a resumed session.
+  std::set<std::string> given;
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/online/latency_histogram.h"
+#include "apps/online/line_queue.h"
+#include "apps/online/line_source.h"
+#include "apps/online/online_update.h"
+#include "frontend/log/log_reader.h"
+
+namespace loopgrid {
+
+/// What a running session tells about itself.
+struct OnlineStatus {
+  std::string source;
+  std::int64_t scans = 0;
+  std::int64_t nodes = 0;
+  std::int64_t constraints = 0;
+  std::int64_t closures_tried = 0;
+  std::int64_t closures_accepted = 0;
+  std::int64_t unmatched = 0;  ///< scans carried by odometry alone
+  bool localized = true;
+  LatencyHistogram latency;  ///< of the scans that came since the start
+  LogStatistics log;
+  LineQueue::Counters queue;
+  SourceCounters counters;
+};
+
+/// status.json.
+std::string FormatStatus(const OnlineStatus& status);
+
+}  // namespace loopgrid
