@@ -120,11 +120,13 @@ EventWriter::EventWriter(const std::string& path)
   if (!output_) Fail(path_, "cannot open");
 }
 
-void EventWriter::Start(const OnlineOptions& options, const std::string& source) {
+void EventWriter::Start(const OnlineOptions& options, const std::string& source,
+                        const std::string& page) {
   if (!enabled()) return;
   buffer_ += Line({{"event", "start"},
                    {"version", LOOPGRID_VERSION},
                    {"source", source},
+                   {"page", page},
                    {"folder", options.run.out},
                    {"options",
                     {{"resolution", options.run.resolution},

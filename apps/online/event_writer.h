@@ -22,7 +22,8 @@ class EventWriter {
 
   bool enabled() const { return static_cast<bool>(output_); }
 
-  void Start(const OnlineOptions& options, const std::string& source);
+  /// `page` is the address of the live page, empty if there is none.
+  void Start(const OnlineOptions& options, const std::string& source, const std::string& page);
   void Resumed(std::int64_t lines, std::int64_t scans);
   void Known(std::int64_t lines);
   void Scan(const OnlineUpdate& update);

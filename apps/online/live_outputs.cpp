@@ -26,12 +26,13 @@ LiveOutputs::LiveOutputs(const OnlineOptions& options, const LineSource* source,
       refresher_(
           std::make_unique<Refresher>(options.run.out, options.interval, &map_, &published_)) {
   status_.source = source_->name();
+  if (options.view.empty()) return;
+  view_ = std::make_unique<ViewServer>(ParseViewAddress(options.view), &map_, &published_);
 }
-
-LiveOutputs::~LiveOutputs() = default;
 
 void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
   map_.Add(update);
+  if (view_) view_->Add(update);
   ++status_.scans;
   if (update.tracked.node >= 0) ++status_.nodes;
   if (!update.tracked.matched) ++status_.unmatched;
@@ -47,6 +48,10 @@ void LiveOutputs::Tick(OnlineMapper* mapper) {
 }
 
 void LiveOutputs::StopRefreshing() { refresher_.reset(); }
+
+void LiveOutputs::Finish() {
+  if (view_) view_->Finish();
+}
 
 void LiveOutputs::Refresh(const Slam& slam) {
   refreshed_scans_ = status_.scans;

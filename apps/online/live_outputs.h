@@ -14,6 +14,7 @@
 #include "apps/online/published_files.h"
 #include "apps/online/refresher.h"
 #include "apps/view/live_map.h"
+#include "apps/view/view_server.h"
 
 namespace loopgrid {
 
@@ -24,7 +25,9 @@ class LiveOutputs {
   /// Throws Error (kInput) if the page's address cannot be had.
   LiveOutputs(const OnlineOptions& options, const LineSource* source, const LineQueue* queue,
               EventWriter* events);
-  ~LiveOutputs();
+
+  /// Null if there is no page.
+  const ViewServer* view() const { return view_.get(); }
 
   /// Takes a scan. `is_new`: it came just now, not out of the journal.
   void Add(const OnlineUpdate& update, bool is_new);
@@ -34,6 +37,9 @@ class LiveOutputs {
 
   /// Files are not refreshed any more.
   void StopRefreshing();
+
+  /// Nothing more comes: viewers are told.
+  void Finish();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -46,6 +52,7 @@ class LiveOutputs {
   EventWriter* events_;
   PublishedFiles published_;
   LiveMap map_;
+  std::unique_ptr<ViewServer> view_;
   std::unique_ptr<Refresher> refresher_;
   OnlineStatus status_;
   std::int64_t refreshed_scans_ = 0;

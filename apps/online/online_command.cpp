@@ -37,6 +37,7 @@ std::unique_ptr<LineSource> OpenListenSource(const OnlineOptions& options) {
   const HostPort address = ParseHostPort(options.listen);
   auto source = std::make_unique<ListenSource>(
       ListenOptions{.address = address, .end_with_sender = options.once});
+  if (!options.run.quiet) Note("waiting for a sender at " + source->name());
   if (!IsLoopback(address.host)) {
     Note("WARNING: " + source->name() + " is open to other machines: whoever can reach it can " +
          "send scans");
@@ -52,6 +53,14 @@ std::unique_ptr<LineSource> OpenSource(const OnlineOptions& options) {
         ConnectOptions{.address = ParseHostPort(options.connect), .end_with_sender = options.once});
   }
   return std::make_unique<PipeSource>(STDIN_FILENO, "standard input");
+}
+
+void TellOfPage(const OnlineOptions& options, const ViewServer* view) {
+  if (view == nullptr) return;
+  if (!view->is_loopback()) {
+    Note("WARNING: " + view->url() + " is open to other machines: whoever can reach it can watch");
+  }
+  if (!options.run.quiet) Note("the page is at " + view->url());
 }
 
 /// Runs a source on a thread of its own.
@@ -142,7 +151,8 @@ void OnlineCommand(OnlineOptions options) {
   EventWriter events = options.events.empty() ? EventWriter() : EventWriter(options.events);
   LineQueue queue;
   LiveOutputs live(options, source.get(), &queue, &events);
-  events.Start(options, source->name());
+  TellOfPage(options, live.view());
+  events.Start(options, source->name(), live.view() == nullptr ? "" : live.view()->url());
   events.Flush();
   ProgressBar bar(options.run.quiet);
   OnlineSession session(
@@ -160,6 +170,7 @@ void OnlineCommand(OnlineOptions options) {
   FinishRun(stopwatch, session.mapper()->slam(), &outputs, &bar, &report);
   events.End(report.log.lines, report.log.scans, stopped);
   events.Flush();
+  live.Finish();
   PrintSummary(options, report);
   reading.Join();
 }
