@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "apps/view/view_options.h"
+#include "apps/view/view_routes.h"
+
+namespace loopgrid {
+
+/// What an HttpService serves. It is asked on the service's thread.
+class HttpContent {
+ public:
+  virtual ~HttpContent() = default;
+
+  virtual Reply Answer(const Request& request) = 0;
+
+  /// Called once a batch: what has happened since, for all who follow events; null if nothing.
+  virtual std::shared_ptr<const std::string> TakeNews() = 0;
+
+  /// Where things stood at the last news, for somebody who knows nothing.
+  virtual std::shared_ptr<const std::string> Snapshot() = 0;
+};
+
+struct HttpCounters {
+  int connections = 0;           ///< open now
+  int viewers = 0;               ///< of them, those that follow events
+  std::int64_t requests = 0;     ///< that were well-formed, whatever the answer
+  std::int64_t turned_away = 0;  ///< connections over the limit
+  std::int64_t skips = 0;        ///< how often a slow viewer skipped ahead
+};
+
+/// An HTTP/1.1 server for GET and HEAD, with server-sent events, on a thread of its own. A
+/// connection never takes more than its header (8 KiB), a reply that all share and `max_backlog`.
+class HttpService {
+ public:
+  /// Binds; Start() begins to serve. Throws Error (kInput) if the address cannot be bound.
+  explicit HttpService(const ViewServerOptions& options);
+
+  /// Drops all connections.
+  ~HttpService();
+  HttpService(const HttpService&) = delete;
+  HttpService& operator=(const HttpService&) = delete;
+
+  /// Call once. `content` must live longer than this object.
+  void Start(HttpContent* content);
+
+  int port() const;
+  std::string url() const;
+  bool is_loopback() const;
+
+  /// Waits until all who follow events have been sent what has happened so far; at most `seconds`.
+  void WaitUntilSent(double seconds);
+
+  HttpCounters counters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace loopgrid
