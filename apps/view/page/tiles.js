@@ -1,1 +1,166 @@
-// tiles
+// The map as squares at several scales. Fetches those that are on the screen and have changed.
+
+const TILE_SIDE = 256;         // pixels
+const TILE_LEVELS = 6;
+const MAX_FETCHES = 4;         // at a time
+const FETCH_INTERVAL = 300;    // milliseconds between two fetches of the same tile
+const MAX_PICTURES = 256;      // kept: 256 KiB each
+const GREY_WALL = 0;
+const GREY_FREE = 254;
+
+class Tiles {
+  constructor() {
+    this.reset('', 0.05);
+  }
+
+  reset(run, resolution) {
+    this.run = run;
+    this.resolution = resolution;
+    this.tiles = new Map();   // 'level/x/y' -> tile
+    this.fetches = 0;
+    this.changes = 0;
+    this.frozen = false;
+  }
+
+  /** Versions of tiles as in the events: [level, x, y, version]. */
+  take(versions) {
+    for (const [level, x, y, version] of versions) {
+      const key = `${level}/${x}/${y}`;
+      const tile = this.tiles.get(key);
+      if (tile) tile.version = Math.max(tile.version, version);
+      else this.tiles.set(key, {key, level, x, y, version, shown: 0, fetched: 0, used: 0,
+                                fetching: false, picture: null, known: null});
+    }
+    ++this.changes;
+  }
+
+  /** Colours have changed: all pictures are made anew. */
+  repaint() {
+    for (const tile of this.tiles.values()) tile.shown = tile.fetched = 0;
+  }
+
+  side(level) {
+    return TILE_SIDE * this.resolution * 2 ** level;
+  }
+
+  /** The level of which a pixel is nearest to one on the screen, but not larger. */
+  levelFor(pixelsPerMetre) {
+    const cells = 1 / (pixelsPerMetre * this.resolution);
+    return Math.min(TILE_LEVELS - 1, Math.max(0, Math.floor(Math.log2(cells) + 0.25)));
+  }
+
+  /** The part of the map where anything is known, as far as was seen here; null if nothing. */
+  bounds(level) {
+    let box = null;
+    for (const tile of this.tiles.values()) {
+      if (tile.level !== level) continue;
+      const side = this.side(level);
+      const [x0, y0, x1, y1] = tile.known ?? [0, 0, 1, 1];
+      const part = {x0: (tile.x + x0) * side, y0: (tile.y + y0) * side,
+                    x1: (tile.x + x1) * side, y1: (tile.y + y1) * side};
+      box = box ? {x0: Math.min(box.x0, part.x0), y0: Math.min(box.y0, part.y0),
+                   x1: Math.max(box.x1, part.x1), y1: Math.max(box.y1, part.y1)} : part;
+    }
+    return box;
+  }
+
+  /** Draws what `camera` sees; fetches what is missing. True if some of it is on its way. */
+  draw(context, camera, ratio, palette, now) {
+    const level = this.levelFor(camera.scale * ratio);
+    const side = this.side(level);
+    const view = camera.view();
+    const [x0, y0] = [Math.floor(view.x0 / side), Math.floor(view.y0 / side)];
+    const [x1, y1] = [Math.floor(view.x1 / side), Math.floor(view.y1 / side)];
+    context.imageSmoothingEnabled = camera.scale * ratio * this.resolution < 1;
+    let waiting = false;
+    for (let y = y0; y <= y1; ++y) {
+      for (let x = x0; x <= x1; ++x) {
+        const tile = this.tiles.get(`${level}/${x}/${y}`);
+        if (!tile) continue;
+        tile.used = now;
+        if (tile.shown < tile.version && !(this.frozen && tile.picture)) {
+          waiting = true;
+          this.fetch(tile, palette, now);
+        }
+        this.drawTile(context, camera, ratio, tile);
+      }
+    }
+    return waiting;
+  }
+
+  // A tile that is not here yet is cut out of a coarser one.
+  drawTile(context, camera, ratio, tile) {
+    let [picture, sx, sy, size] = [tile.picture, 0, 0, TILE_SIDE];
+    for (let up = 1; !picture && tile.level + up < TILE_LEVELS; ++up) {
+      const [px, py] = [tile.x >> up, tile.y >> up];
+      picture = this.tiles.get(`${tile.level + up}/${px}/${py}`)?.picture;
+      size = TILE_SIDE >> up;
+      sx = (tile.x - (px << up)) * size;
+      sy = TILE_SIDE - size - (tile.y - (py << up)) * size;
+    }
+    if (!picture) return;
+    const side = this.side(tile.level);
+    const [left, top] = camera.toScreen(tile.x * side, (tile.y + 1) * side);
+    const [right, bottom] = camera.toScreen((tile.x + 1) * side, tile.y * side);
+    const [x, y] = [Math.round(left * ratio), Math.round(top * ratio)];
+    context.drawImage(picture, sx, sy, size, size, x, y,
+                      Math.round(right * ratio) - x, Math.round(bottom * ratio) - y);
+  }
+
+  async fetch(tile, palette, now) {
+    if (tile.fetching || this.fetches >= MAX_FETCHES) return;
+    if (now - tile.fetched < FETCH_INTERVAL) return;
+    const {run, tiles} = this;
+    const version = tile.version;
+    tile.fetching = true;
+    tile.fetched = now;
+    ++this.fetches;
+    try {
+      const reply = await fetch(`/tiles/${tile.key}.png?v=${run}.${version}`);
+      if (!reply.ok) return;
+      const image = await createImageBitmap(await reply.blob());
+      if (tiles !== this.tiles) return;
+      if (!tile.picture) this.makeRoom();
+      this.paint(tile, image, palette);
+      tile.shown = version;
+      ++this.changes;
+    } catch {
+      // The server is gone. When it is back, its state tells what to ask for.
+    } finally {
+      tile.fetching = false;
+      if (tiles === this.tiles) --this.fetches;
+    }
+  }
+
+  // Grey becomes the colours of the page; what is unknown stays clear.
+  paint(tile, image, palette) {
+    tile.picture ??= Object.assign(document.createElement('canvas'),
+                                   {width: TILE_SIDE, height: TILE_SIDE});
+    const context = tile.picture.getContext('2d', {willReadFrequently: true});
+    context.drawImage(image, 0, 0);
+    const data = context.getImageData(0, 0, TILE_SIDE, TILE_SIDE);
+    const pixels = new Uint32Array(data.data.buffer);
+    let [x0, y0, x1, y1] = [TILE_SIDE, TILE_SIDE, 0, 0];
+    for (let y = 0, i = 0; y < TILE_SIDE; ++y) {
+      for (let x = 0; x < TILE_SIDE; ++x, ++i) {
+        const grey = pixels[i] & 255;
+        const isKnown = grey === GREY_WALL || grey === GREY_FREE;
+        pixels[i] = !isKnown ? 0 : grey === GREY_WALL ? palette.wall : palette.free;
+        if (!isKnown) continue;
+        if (x < x0) x0 = x;
+        if (x >= x1) x1 = x + 1;
+        if (y < y0) y0 = y;
+        y1 = y + 1;
+      }
+    }
+    context.putImageData(data, 0, 0);
+    tile.known = [x0, TILE_SIDE - y1, x1, TILE_SIDE - y0].map((pixel) => pixel / TILE_SIDE);
+  }
+
+  makeRoom() {
+    const kept = [...this.tiles.values()].filter((tile) => tile.picture);
+    if (kept.length < MAX_PICTURES) return;
+    const oldest = kept.reduce((a, b) => (a.used < b.used ? a : b));
+    Object.assign(oldest, {picture: null, shown: 0});
+  }
+}

@@ -1,1 +1,149 @@
-// world
+'use strict';
+
+// What the server has told: a copy of its state, kept up to date by its events. Metres, radians.
+
+const LATENCIES = 200;  // scans that the figures are about
+const FLASH = 1600;     // milliseconds that a closure lights up
+const FLASHES = 12;     // at a time
+
+class World {
+  constructor() {
+    this.run = '';
+    this.clear();
+  }
+
+  clear() {
+    this.resolution = 0.05;
+    this.pose = null;     // the newest, as in the events
+    this.nodes = [];      // [x, y, theta, xx, xy, yy, tt, linked]
+    this.tail = [];       // positions since the last node
+    this.closures = new Map();  // by id
+    this.flashes = new Map();   // closure id -> time of its end
+    this.counters = {scans: 0, unmatched: 0, nodes: 0, accepted: 0, pending: 0, refused: 0};
+    this.latencies = [];
+    this.clock = null;    // where log time and real time were compared
+    this.speed = 0;       // log seconds a second
+    this.ended = false;
+    this.changes = 0;     // rises with every change
+  }
+
+  /** Everything anew. True if it is another run of the program. */
+  takeState(state) {
+    const isOther = state.run !== this.run;
+    this.clear();
+    this.run = state.run;
+    this.resolution = state.resolution;
+    this.ended = state.ended;
+    this.takeNodes(state);
+    this.takeClosures(state.closures, false);
+    this.counters = state.counters;
+    if (state.pose) this.takePoses([state.pose]);
+    return isOther;
+  }
+
+  takeNodes({first, nodes}) {
+    if (first + nodes.length > this.nodes.length) this.tail = [];
+    this.nodes.splice(first, nodes.length, ...nodes);
+    ++this.changes;
+  }
+
+  takePoses(poses) {
+    for (const pose of poses) {
+      this.tail.push([pose.x, pose.y]);
+      this.latencies.push(pose.latency_ms);
+    }
+    if (this.tail.length > 400) this.tail.splice(0, this.tail.length - 400);
+    if (this.latencies.length > LATENCIES) {
+      this.latencies.splice(0, this.latencies.length - LATENCIES);
+    }
+    this.pose = poses[poses.length - 1];
+    this.measureSpeed();
+    ++this.changes;
+  }
+
+  // Log time that has passed in real time, over two seconds or so.
+  measureSpeed() {
+    const now = {real: performance.now() / 1000, log: this.pose.time};
+    const passed = this.clock ? now.real - this.clock.real : Infinity;
+    if (passed < 2) return;
+    if (passed < 10) this.speed = Math.max(0, (now.log - this.clock.log) / passed);
+    this.clock = now;
+  }
+
+  takeClosures(closures, flash) {
+    for (const closure of closures) {
+      const before = this.closures.get(closure.id);
+      this.closures.set(closure.id, closure);
+      if (flash && closure.outcome !== 'pending' && closure.outcome !== before?.outcome) {
+        this.flash(closure.id);
+      }
+    }
+    ++this.changes;
+  }
+
+  flash(id) {
+    this.flashes.delete(id);
+    this.flashes.set(id, performance.now() + FLASH);
+    if (this.flashes.size > FLASHES) this.flashes.delete(this.flashes.keys().next().value);
+    ++this.changes;
+  }
+
+  /** Share of the flash that is left, 0..1. */
+  flashOf(id, now) {
+    const end = this.flashes.get(id);
+    if (end === undefined) return 0;
+    if (end <= now) this.flashes.delete(id);
+    return Math.max(0, (end - now) / FLASH);
+  }
+
+  /** The path along the nodes, metres. */
+  travelled() {
+    let sum = 0;
+    for (let i = 1; i < this.nodes.length; ++i) {
+      const [x, y, , , , , , linked] = this.nodes[i];
+      if (linked) sum += Math.hypot(x - this.nodes[i - 1][0], y - this.nodes[i - 1][1]);
+    }
+    return sum;
+  }
+
+  /** A copy that stays as it is. */
+  frozen() {
+    const copy = Object.assign(Object.create(World.prototype), this);
+    copy.nodes = [...this.nodes];
+    copy.tail = [...this.tail];
+    copy.closures = new Map(this.closures);
+    copy.flashes = new Map();
+    copy.latencies = [...this.latencies];
+    return copy;
+  }
+}
+
+/** 'accepted', 'pending' or 'refused': what a closure's outcome comes to. */
+function verdict(closure) {
+  return ['accepted', 'pending'].includes(closure.outcome) ? closure.outcome : 'refused';
+}
+
+// Follows /events for ever: when the server goes away, it keeps on knocking.
+class Link {
+  constructor(handlers) {
+    this.handlers = handlers;
+    this.wait = 0;
+    this.open();
+  }
+
+  open() {
+    const source = new EventSource('/events');
+    for (const [name, handler] of Object.entries(this.handlers.events)) {
+      source.addEventListener(name, (event) => {
+        this.wait = 0;
+        handler(JSON.parse(event.data));
+      });
+    }
+    source.onerror = () => {
+      source.close();
+      this.handlers.lost();
+      this.wait = Math.min(2000, this.wait + 250);
+      setTimeout(() => this.open(), this.wait);
+    };
+  }
+}
