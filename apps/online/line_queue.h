@@ -12,10 +12,10 @@ namespace loopgrid {
 
 /// A line of the stream, without its end (LF or CRLF).
 struct ReceivedLine {
-  std::string text;
+  std::string text{};
   bool terminated = true;  ///< false: the stream broke off within it
   bool too_long = false;   ///< it was longer than allowed, and `text` is empty
-  std::chrono::steady_clock::time_point arrival;
+  std::chrono::steady_clock::time_point arrival{};
 };
 
 /// Lines on their way from one source to one mapper, bounded in bytes. A full queue makes the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 
@@ -15,6 +16,11 @@ class PortableRandom {
   double Uniform() { return static_cast<double>(engine_()) / 4294967296.0; }
 
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+
+  /// One of 0 .. count - 1.
+  std::size_t Index(std::size_t count) {
+    return static_cast<std::size_t>(Uniform() * static_cast<double>(count));
+  }
 
   /// Nearly normal with mean 0 and deviation 1: the sum of twelve uniform numbers, which needs no
   /// function that libraries round differently. Never beyond 6.
