@@ -252,7 +252,8 @@ TEST(ListenSource, AFullQueueHoldsTheSenderUp) {
   LineQueue queue(1'000);
   std::thread reader([&] { source.Run(&queue); });
   const Socket sender = Socket::ConnectTo(source.port());
-  const std::string lines = std::string(9'999, 'x') + "\n";
+  std::string lines(9'999, 'x');
+  lines += '\n';
   std::size_t sent = 0;
   // Until the system takes no more while the source waits for room.
   ASSERT_TRUE(WaitUntil([&] {

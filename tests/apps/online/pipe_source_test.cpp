@@ -109,7 +109,8 @@ TEST_F(PipeSourceTest, AFullQueueHoldsTheWriterUp) {
   std::thread reader([&] { source.Run(&queue); });
   std::size_t written = 0;
   fcntl(write_end_.get(), F_SETFL, O_NONBLOCK);
-  const std::string lines = std::string(99, 'x') + "\n";
+  std::string lines(99, 'x');
+  lines += '\n';
   // Until the pipe stays full while the source waits.
   ASSERT_TRUE(WaitUntil([&] {
     ssize_t count = 0;
