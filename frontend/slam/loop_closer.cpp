@@ -140,9 +140,13 @@ void LoopCloser::Try(const Nodes& nodes, double timestamp, const ClosureCandidat
 
 void LoopCloser::TryEverywhere(const Nodes& nodes, double timestamp) {
   const int newest = nodes.size() - 1;
-  const int age = newest - session_;
-  if (age > options_.eager_nodes && age % options_.later_node_steps != 0) return;
   if (!finder_) finder_.emplace(nodes, session_, options_.place_finder);
+  const int age = newest - session_;
+  const int steps =
+      age > options_.eager_nodes
+          ? options_.max_node_steps
+          : std::clamp(finder_->places() / options_.places_a_node, 1, options_.max_node_steps);
+  if (age % steps != 0) return;
   const std::optional<FoundPlace> found = finder_->Find(
       nodes.scan(newest), Surroundings(nodes, options_.surroundings_path), options_.matcher);
   if (!found) return;

@@ -36,8 +36,10 @@ struct LoopCloserOptions {
   int horizon_nodes = 20;          ///< hypotheses this many nodes old no longer count
   PlaceFinderOptions place_finder;
   int min_agreeing_anywhere = 4;  ///< as min_agreeing, for a robot that may be anywhere
-  int eager_nodes = 40;           ///< of a session that are all looked for in the whole map ...
-  int later_node_steps = 4;       ///< ... and how many of them make one step later
+  int places_a_node = 40;  ///< a search of so many places pays off at every node of a session, one
+                           ///< of twice as many at every second one, ...
+  int max_node_steps = 4;  ///< ... but at least at every so many
+  int eager_nodes = 40;    ///< nodes after which a session that is still lost looks as seldom
 };
 
 /// Where an old place may be seen again.

@@ -31,6 +31,9 @@ class PlaceFinder {
   /// The map is that of the first `count` nodes, where they are now.
   PlaceFinder(const Nodes& nodes, int count, const PlaceFinderOptions& options = {});
 
+  /// How many windows a search goes through.
+  int places() const { return static_cast<int>(centers_.size()); }
+
   /// The best place for `scan`, `surroundings` as in MatchClosure(), both in the robot frame. The
   /// second score is that of the best other place. Nothing if no place reaches the scores.
   std::optional<FoundPlace> Find(const PointScan& scan,
