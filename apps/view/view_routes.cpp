@@ -115,7 +115,7 @@ Reply ViewRoutes::Dispatch(const Request& request) const {
     return Tile(path.substr(kTiles.size()), query, request.if_none_match);
   }
   for (const ServedFile& file : kFiles) {
-    if (path.substr(1) == file.name) return File(file.name, file.type);
+    if (path.starts_with('/') && path.substr(1) == file.name) return File(file.name, file.type);
   }
   return Refusal(404, "there is nothing here; the page is at /");
 }

@@ -1,0 +1,145 @@
+#include "apps/view/view_server.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "backend/base/error.h"
+#include "tests/apps/online/wait_until.h"
+#include "tests/apps/view/round_trip.h"
+#include "tests/apps/view/wire.h"
+#include "tests/support/http_client.h"
+
+namespace loopgrid {
+namespace {
+
+using test_support::AskOnce;
+using test_support::RoundTrip;
+using test_support::WaitUntil;
+using test_support::Wire;
+
+constexpr const char* kFollow = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
+
+ViewServerOptions QuickOptions() {
+  ViewServerOptions options;
+  options.batch_interval = 0.002;
+  return options;
+}
+
+class ViewServerTest : public testing::Test {
+ protected:
+  LiveMap map_;
+  PublishedFiles files_;
+  ViewServer server_{QuickOptions(), &map_, &files_};
+};
+
+TEST_F(ViewServerTest, ServesPageFilesAndTiles) {
+  const RoundTrip trip(3);
+  map_.Add(trip.Update(0));
+  map_.WaitUntilCurrent();
+  files_.Put("map.png", std::make_shared<const std::string>(EncodePng(map_.Picture().image)));
+  const auto page = AskOnce(server_.port(), {});
+  EXPECT_EQ(page.status, 200);
+  EXPECT_NE(page.body.find("<canvas"), std::string::npos);
+  EXPECT_EQ(AskOnce(server_.port(), {.target = "/map.png"}).body, *files_.Get("map.png"));
+  EXPECT_EQ(AskOnce(server_.port(), {.target = "/map.yaml"}).status, 503);
+  EXPECT_EQ(AskOnce(server_.port(), {.target = "/tiles/0/0/0.png"}).body,
+            *map_.tiles().Png({0, 0, 0}));
+  EXPECT_EQ(AskOnce(server_.port(), {.method = "POST", .body = "x"}).status, 405);
+  EXPECT_EQ(AskOnce(server_.port(), {.headers = {{"Host", "evil.example"}}}).status, 403);
+}
+
+TEST_F(ViewServerTest, TellsViewersWhatHappens) {
+  RoundTrip trip(9);
+  Wire viewer(server_.port(), kFollow);
+  ASSERT_TRUE(viewer.WaitFor("event: state\n"));
+  ASSERT_TRUE(viewer.WaitFor("\n\n"));
+  ASSERT_TRUE(WaitUntil([this] { return server_.counters().viewers == 1; }));
+  OnlineUpdate update = trip.UpdateWithNodes(6);
+  ClosureRecord record;
+  record.outcome = ClosureOutcome::kAmbiguous;
+  update.closures = {record};
+  map_.Add(update);
+  server_.Add(update);
+  EXPECT_TRUE(viewer.WaitFor("event: poses\n"));
+  EXPECT_TRUE(viewer.WaitFor("event: nodes\n"));
+  EXPECT_TRUE(viewer.WaitFor("a second place fits nearly as well"));
+  EXPECT_TRUE(viewer.WaitFor("event: tiles\n"));
+  EXPECT_EQ(viewer.received().find("event: end"), std::string::npos);
+}
+
+TEST_F(ViewServerTest, ServesTwentyViewersWhileTheMapGrows) {
+  RoundTrip trip(120);
+  std::vector<Wire> viewers;
+  for (int i = 0; i < 20; ++i) viewers.emplace_back(server_.port(), kFollow);
+  std::thread mapping([&] {
+    for (int scan = 0; scan < trip.scans(); ++scan) {
+      if (scan % 30 == 29) trip.MoveNodes(SE2(0.001 * scan, 0.0, 0.0));
+      const OnlineUpdate update = scan % 30 == 29 ? trip.UpdateWithNodes(scan) : trip.Update(scan);
+      map_.Add(update);
+      server_.Add(update);
+    }
+  });
+  for (Wire& viewer : viewers) EXPECT_TRUE(viewer.WaitFor("\"scan\":119,"));
+  mapping.join();
+}
+
+TEST_F(ViewServerTest, SaysThatItIsOverToThoseWhoAreThereAndThoseWhoCome) {
+  const RoundTrip trip(3);
+  Wire early(server_.port(), kFollow);
+  ASSERT_TRUE(WaitUntil([this] { return server_.counters().viewers == 1; }));
+  server_.Add(trip.Update(0));
+  server_.Finish();
+  EXPECT_TRUE(early.WaitFor("event: end\n"));
+  EXPECT_LT(early.received().find("\"scan\":0,"), early.received().find("event: end\n"));
+  Wire late(server_.port(), kFollow);
+  EXPECT_TRUE(late.WaitFor("\"ended\":true"));
+}
+
+TEST_F(ViewServerTest, GivesEachRunAnotherName) {
+  ViewServer other(QuickOptions(), &map_, &files_);
+  Wire a(server_.port(), kFollow);
+  Wire b(other.port(), kFollow);
+  ASSERT_TRUE(a.WaitFor("\"resolution\""));
+  ASSERT_TRUE(b.WaitFor("\"resolution\""));
+  const auto run = [](const Wire& wire) {
+    return wire.received().substr(wire.received().find("\"run\""), 25);
+  };
+  EXPECT_NE(run(a), run(b));
+}
+
+TEST(ViewServerOptions, AreReadFromAnAddress) {
+  EXPECT_EQ(ParseViewAddress("8080").host, "127.0.0.1");
+  EXPECT_EQ(ParseViewAddress("8080").port, 8080);
+  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").host, "0.0.0.0");
+  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").port, 80);
+  EXPECT_EQ(ParseViewAddress("[::1]:8080").host, "::1");
+  for (const char* nonsense : {"", "x", "70000", "-1", "localhost", "localhost:", ":80", "1.5",
+                               "host:port", "host:70000"}) {
+    EXPECT_THROW(ParseViewAddress(nonsense), Error) << nonsense;
+  }
+}
+
+TEST(ViewServerOptions, AreRefusedOutOfRange) {
+  const auto is_refused = [](auto change) {
+    ViewServerOptions options;
+    change(&options);
+    try {
+      options.Validate();
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::kUsage;
+    }
+    return false;
+  };
+  EXPECT_NO_THROW(ViewServerOptions().Validate());
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->host = ""; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->port = 65536; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->max_connections = 0; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->request_timeout = 0.0; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->write_timeout = 1e9; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->batch_interval = 0.0; }));
+  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->max_backlog = 0; }));
+}
+
+}  // namespace
+}  // namespace loopgrid
