@@ -4,6 +4,7 @@
 #include "apps/online/online_options.h"
 #include "apps/optimize_options.h"
 #include "apps/plot_command.h"
+#include "apps/replay_options.h"
 #include "apps/run_options.h"
 
 namespace CLI {
@@ -26,5 +27,6 @@ void AddOnline(CLI::App* program, OnlineOptions* options);
 void AddEval(CLI::App* program, EvalOptions* options);
 void AddOptimize(CLI::App* program, OptimizeOptions* options);
 void AddPlot(CLI::App* program, PlotOptions* options);
+void AddReplay(CLI::App* program, ReplayOptions* options);
 
 }  // namespace loopgrid

@@ -31,6 +31,7 @@ Command ParseCommandLine(int argc, const char* const* argv) {
   EvalOptions eval;
   OptimizeOptions optimize;
   PlotOptions plot;
+  ReplayOptions replay;
   CLI::App program(
       "Graph-based 2D laser SLAM: a robot's log in; map, trajectory and graph out. Its back-end\n"
       "alone: a pose graph in, 2D or 3D; the best poses and their covariances out.",
@@ -44,6 +45,7 @@ Command ParseCommandLine(int argc, const char* const* argv) {
   AddEval(&program, &eval);
   AddOptimize(&program, &optimize);
   AddPlot(&program, &plot);
+  AddReplay(&program, &replay);
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -57,6 +59,7 @@ Command ParseCommandLine(int argc, const char* const* argv) {
   if (program.got_subcommand("online")) return online;
   if (program.got_subcommand("optimize")) return optimize;
   if (program.got_subcommand("plot")) return plot;
+  if (program.got_subcommand("replay")) return replay;
   return eval;
 }
 

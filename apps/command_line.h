@@ -7,6 +7,7 @@
 #include "apps/online/online_options.h"
 #include "apps/optimize_options.h"
 #include "apps/plot_command.h"
+#include "apps/replay_options.h"
 #include "apps/run_options.h"
 
 namespace loopgrid {
@@ -16,8 +17,8 @@ struct Answer {
   std::string text;
 };
 
-using Command =
-    std::variant<RunOptions, OnlineOptions, EvalOptions, OptimizeOptions, PlotOptions, Answer>;
+using Command = std::variant<RunOptions, OnlineOptions, ReplayOptions, EvalOptions, OptimizeOptions,
+                             PlotOptions, Answer>;
 
 /// What the arguments ask for. Throws Error (kUsage) if they make no sense.
 Command ParseCommandLine(int argc, const char* const* argv);

@@ -14,6 +14,7 @@
 #include "apps/online/online_command.h"
 #include "apps/optimize_command.h"
 #include "apps/plot_command.h"
+#include "apps/replay_command.h"
 #include "apps/run_command.h"
 #include "apps/standard_output.h"
 #include "backend/base/error.h"
@@ -48,6 +49,7 @@ void Execute(const OnlineOptions& options) { OnlineCommand(options); }
 void Execute(const EvalOptions& options) { EvalCommand(options); }
 void Execute(const OptimizeOptions& options) { OptimizeCommand(options); }
 void Execute(const PlotOptions& options) { PlotCommand(options); }
+void Execute(const ReplayOptions& options) { ReplayCommand(options); }
 void Execute(const Answer& answer) { PrintToStandardOutput(answer.text); }
 
 /// One line, whatever the message has in it; nobody is left to tell if this fails.

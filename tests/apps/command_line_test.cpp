@@ -55,6 +55,22 @@ TEST(CommandLine, EveryOptionOfRunReachesItsField) {
   EXPECT_TRUE(run.quiet);
 }
 
+TEST(CommandLine, ReplayTakesALogAndEveryOptionReachesItsField) {
+  const auto plain = std::get<ReplayOptions>(Parse({"replay", "a.clf"}));
+  EXPECT_EQ(plain.log, "a.clf");
+  EXPECT_EQ(plain.speed, 1.0);
+  EXPECT_EQ(plain.to, "");
+  EXPECT_EQ(plain.loop, 1);
+  EXPECT_EQ(plain.from_line, 1);
+  const auto replay =
+      std::get<ReplayOptions>(Parse({"replay", "a.clf", "--speed", "10", "--to", "robot:7070",
+                                     "--loop", "0", "--from-line", "20"}));
+  EXPECT_EQ(replay.speed, 10.0);
+  EXPECT_EQ(replay.to, "robot:7070");
+  EXPECT_EQ(replay.loop, 0);
+  EXPECT_EQ(replay.from_line, 20);
+}
+
 TEST(CommandLine, EvalTakesTwoFiles) {
   const auto eval = std::get<EvalOptions>(Parse({"eval", "a.tum", "b.relations", "--json"}));
   EXPECT_EQ(eval.estimate, "a.tum");

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <stdexcept>
@@ -56,6 +57,15 @@ class Socket {
   std::size_t SendWithoutWaiting(std::string_view bytes) const {
     const ssize_t count = send(get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+
+  /// Waits for bytes and takes them; none at the end, or if none come.
+  std::string Receive() const {
+    std::array<char, 4096> bytes;
+    pollfd waiting = {get(), POLLIN, 0};
+    if (poll(&waiting, 1, 60'000) <= 0) return "";
+    const ssize_t count = recv(get(), bytes.data(), bytes.size(), 0);
+    return std::string(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   }
 
   /// Says that no more will be sent, but stays.

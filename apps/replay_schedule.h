@@ -1,0 +1,25 @@
+#pragma once
+
+namespace loopgrid {
+
+/// When the scans of a log are due if it is played.
+class ReplaySchedule {
+ public:
+  /// `speed` is times real time; 0: everything is due at once.
+  explicit ReplaySchedule(double speed) : speed_(speed) {}
+
+  /// Takes the time stamp of the next scan. Returns when it is due, seconds from the start: as long
+  /// after the one before as the stamps say, but at once where the clock has jumped, which is a
+  /// step backwards or one of more than kLongestGap.
+  double Due(double timestamp);
+
+  static constexpr double kLongestGap = 5.0;  ///< seconds by the log's clock
+
+ private:
+  double speed_;
+  bool begun_ = false;
+  double last_timestamp_ = 0.0;
+  double due_ = 0.0;
+};
+
+}  // namespace loopgrid
