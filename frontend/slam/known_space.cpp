@@ -24,6 +24,16 @@ std::vector<int> NearestNodes(const PoseGraph<SE2>& graph, int end, const Eigen:
   return nearest;
 }
 
+int NodesBehind(const PoseGraph<SE2>& graph, int session, const KnownSpaceOptions& options) {
+  const int count = static_cast<int>(graph.poses.size());
+  int node = count - 1;
+  for (double path = 0.0; node > 0 && path <= options.recent_path; --node) {
+    const auto k = static_cast<std::size_t>(node);
+    path += (graph.poses[k].translation() - graph.poses[k - 1].translation()).norm();
+  }
+  return std::max(std::min(node, count - options.recent_nodes), session);
+}
+
 bool IsKnown(const PoseGraph<SE2>& graph, int end, int session, const Eigen::Vector2d& position,
              const KnownSpaceOptions& options) {
   int passes = 0;

@@ -25,6 +25,10 @@ struct KnownSpaceOptions {
 std::vector<int> NearestNodes(const PoseGraph<SE2>& graph, int end, const Eigen::Vector2d& position,
                               int count);
 
+/// How many of the nodes, from the first one on, the robot has left behind it; all those before the
+/// session that begins with node `session` are.
+int NodesBehind(const PoseGraph<SE2>& graph, int session, const KnownSpaceOptions& options);
+
 /// Whether the map is known at `position`: of the nodes before `end`, some of an earlier session
 /// than the one that begins with node `session` are near, or those of enough passes.
 bool IsKnown(const PoseGraph<SE2>& graph, int end, int session, const Eigen::Vector2d& position,

@@ -9,6 +9,7 @@
 #include "frontend/log/observation.h"
 #include "frontend/matching/point_scan.h"
 #include "frontend/slam/closure_record.h"
+#include "frontend/slam/scan_trail.h"
 #include "frontend/slam/slam_options.h"
 
 namespace loopgrid {
@@ -25,12 +26,6 @@ struct TrackedScan {
   int node = -1;              ///< index of the node this scan became, -1 if none
   bool optimized = false;     ///< poses of older scans have moved
   std::vector<int> closures;  ///< records of closures() that are new or have changed
-};
-
-/// Where a scan is in the graph.
-struct ScanPlace {
-  int node = 0;  ///< the node it belongs to
-  SE2 T_node_robot;
 };
 
 /// Seconds spent in each stage.
