@@ -125,7 +125,8 @@ TEST_F(FollowSourceTest, NoLineIsLostOrRepeatedHoweverItIsWrittenAndRotated) {
   RunningSource running(&source);
   std::vector<std::string> expected;
   for (int i = 0; i < 300; ++i) {
-    const std::string line = std::to_string(i) + std::string(i % 41 * 30, '.');
+    const std::string line =
+        std::to_string(i) + std::string(static_cast<std::size_t>(i % 41 * 30), '.');
     expected.push_back(line);
     const auto cut = static_cast<std::size_t>(random.Uniform(0, static_cast<double>(line.size())));
     Append(line.substr(0, cut));

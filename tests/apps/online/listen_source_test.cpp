@@ -185,7 +185,8 @@ TEST(ListenSource, PacketsOfAnySizeGiveTheSameLines) {
 TEST(ListenSource, GarbageIsPassedOnAsLinesAndHarmsNobody) {
   PortableRandom random(3);
   std::string garbage;
-  for (int i = 0; i < 100'000; ++i) garbage += static_cast<char>(random.Uniform(0, 256));
+  for (int i = 0; i < 100'000; ++i)
+    garbage += static_cast<char>(static_cast<int>(random.Uniform(0, 256)));
   ListenSource source(OnLoopback());
   RunningSource running(&source);
   Socket::ConnectTo(source.port()).Send(garbage);
