@@ -12,24 +12,7 @@
 namespace loopgrid {
 namespace {
 
-using test_support::kNodesARound;
-
-// Twice round the room, with the truth as odometry.
-std::vector<NewNode> RoundNodes() {
-  const std::vector<SE2> truth = test_support::RoundWalk(2 * kNodesARound);
-  std::vector<NewNode> nodes;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    NewNode node;
-    node.parent = static_cast<int>(i) - 1;
-    node.T_parent_node = i == 0 ? truth[0] : truth[i - 1].Inverse() * truth[i];
-    node.covariance = Eigen::Vector3d(4e-4, 4e-4, 4e-5).asDiagonal();
-    node.timestamp = static_cast<double>(i);
-    node.scan = std::make_shared<const PointScan>(test_support::ScanFrom(
-        test_support::DistinctiveRoom(), truth[i], {}, static_cast<std::uint32_t>(i)));
-    nodes.push_back(std::move(node));
-  }
-  return nodes;
-}
+using test_support::RoundNodes;
 
 void ExpectSameNews(const ClosingNews& a, const ClosingNews& b) {
   ASSERT_EQ(a.records.size(), b.records.size());
@@ -88,28 +71,6 @@ TEST(ClosingQueue, EndsWithWorkLeftOver) {
     for (const NewNode& node : nodes) queue.Submit(node);
     EXPECT_EQ(queue.size(), static_cast<int>(nodes.size()));
   }
-}
-
-TEST(LoopClosing, TellsOfEachRecordWhatItHasBecome) {
-  LoopClosing closing;
-  std::vector<ClosureRecord> told;
-  const auto listen = [&told](const ClosingNews& news) {
-    for (const auto& [index, record] : news.records) {
-      const auto place = static_cast<std::size_t>(index);
-      ASSERT_LE(place, told.size());  // in order, none left out
-      if (place == told.size()) told.emplace_back();
-      told[place] = record;
-    }
-  };
-  for (const NewNode& node : RoundNodes()) listen(closing.Add(node));
-  listen(closing.Finish());
-  ASSERT_FALSE(told.empty());
-  int accepted = 0;
-  for (const ClosureRecord& record : told) {
-    EXPECT_NE(record.outcome, ClosureOutcome::kPending);
-    accepted += record.outcome == ClosureOutcome::kAccepted ? 1 : 0;
-  }
-  EXPECT_GE(accepted, 3);
 }
 
 }  // namespace

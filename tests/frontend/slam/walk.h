@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frontend/slam/closure_graph.h"
+#include "frontend/slam/loop_closing.h"
 #include "frontend/slam/nodes.h"
 #include "tests/support/rooms.h"
 
@@ -58,6 +59,23 @@ inline std::vector<SE2> RoundWalk(int nodes) {
                        angle + 0.5 * std::numbers::pi);
   }
   return poses;
+}
+
+/// Twice round in DistinctiveRoom(), as tracking would hand it over, with the truth as odometry.
+inline std::vector<NewNode> RoundNodes() {
+  const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
+  std::vector<NewNode> nodes;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    NewNode node;
+    node.parent = static_cast<int>(i) - 1;
+    node.T_parent_node = i == 0 ? truth[0] : truth[i - 1].Inverse() * truth[i];
+    node.covariance = Eigen::Vector3d(4e-4, 4e-4, 4e-5).asDiagonal();
+    node.timestamp = static_cast<double>(i);
+    node.scan = std::make_shared<const PointScan>(
+        ScanFrom(DistinctiveRoom(), truth[i], {}, static_cast<std::uint32_t>(i)));
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
 }
 
 }  // namespace loopgrid::test_support
