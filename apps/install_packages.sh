@@ -14,6 +14,7 @@ if [[ "${1:-}" == tests ]]; then
   packages+=(
     clang libclang-rt-14-dev clang-format
     libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
+    chromium chromium-driver
   )
 fi
 

@@ -108,8 +108,9 @@ std::string ViewState::PoseJson(const OnlineUpdate& update) {
       R"({{"scan":{},"time":{},"x":{},"y":{},"theta":{},"covariance":[{}],"node":{},)"
       R"("matched":{},"localized":{},"latency_ms":{}}})",
       tracked.scan, Number(update.timestamp, 3), Number(pose.x(), 3), Number(pose.y(), 3),
-      Number(pose.theta(), 4), CovarianceInMap(pose, tracked.covariance), update.place.node,
-      tracked.matched, tracked.localized, Number(1e3 * update.latency_seconds, 2));
+      Number(pose.theta(), 4), CovarianceInMap(pose, tracked.covariance),
+      tracked.node < 0 ? "null" : std::to_string(tracked.node), tracked.matched, tracked.localized,
+      Number(1e3 * update.latency_seconds, 2));
 }
 
 void ViewState::AddNode(const SE2& pose) {

@@ -63,7 +63,7 @@ class Panels {
     setText('latency-max', milliseconds(latencies[latencies.length - 1]));
     setText('accepted', String(counters.accepted));
     setText('refused', String(counters.refused));
-    setText('panel-summary', `${counters.nodes} nodes · ${counters.accepted} loops closed, ` +
+    setText('panel-summary', `${counters.nodes} nodes · loops: ${counters.accepted} closed, ` +
                              `${counters.refused} refused`);
   }
 

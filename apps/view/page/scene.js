@@ -89,6 +89,7 @@ class Scene {
       if (linked) path.lineTo(x, y);
       else path.moveTo(x, y);
     }
+    if (!world.tailJoined && world.tail.length > 0) path.moveTo(...world.tail[0]);
     for (const [x, y] of world.tail) path.lineTo(x, y);
     for (const closure of world.closures.values()) {
       if (closure.outcome !== 'accepted') continue;

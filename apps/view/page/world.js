@@ -2,6 +2,7 @@
 
 // What the server has told: a copy of its state, kept up to date by its events. Metres, radians.
 
+const TAIL = 400;       // scans drawn since the last node: in known space there are no new nodes
 const LATENCIES = 200;  // scans that the figures are about
 const FLASH = 1600;     // milliseconds that a closure lights up
 const FLASHES = 12;     // at a time
@@ -16,7 +17,8 @@ class World {
     this.resolution = 0.05;
     this.pose = null;     // the newest, as in the events
     this.nodes = [];      // [x, y, theta, xx, xy, yy, tt, linked]
-    this.tail = [];       // positions since the last node
+    this.tail = [];       // positions of the newest scans since the last node
+    this.tailJoined = true;  // no position between the last node and them was forgotten
     this.closures = new Map();  // by id
     this.flashes = new Map();   // closure id -> time of its end
     this.counters = {scans: 0, unmatched: 0, nodes: 0, accepted: 0, pending: 0, refused: 0};
@@ -42,17 +44,23 @@ class World {
   }
 
   takeNodes({first, nodes}) {
-    if (first + nodes.length > this.nodes.length) this.tail = [];
     this.nodes.splice(first, nodes.length, ...nodes);
     ++this.changes;
   }
 
   takePoses(poses) {
     for (const pose of poses) {
+      if (pose.node !== null) {
+        this.tail = [];
+        this.tailJoined = true;
+      }
       this.tail.push([pose.x, pose.y]);
       this.latencies.push(pose.latency_ms);
     }
-    if (this.tail.length > 400) this.tail.splice(0, this.tail.length - 400);
+    if (this.tail.length > TAIL) {
+      this.tail.splice(0, this.tail.length - TAIL);
+      this.tailJoined = false;
+    }
     if (this.latencies.length > LATENCIES) {
       this.latencies.splice(0, this.latencies.length - LATENCIES);
     }
