@@ -55,9 +55,10 @@ void ExpectReadmeNamesEveryOptionOf(const char* command, int at_least) {
   EXPECT_GE(options, at_least);
 }
 
-TEST(Readme, NamesEveryOptionOfRunAndOptimize) {
+TEST(Readme, NamesEveryOptionOfRunOptimizeAndReplay) {
   ExpectReadmeNamesEveryOptionOf("run", 5);
   ExpectReadmeNamesEveryOptionOf("optimize", 16);
+  ExpectReadmeNamesEveryOptionOf("replay", 4);
 }
 
 TEST(Readme, ShowsCommandsThatRun) {
