@@ -42,7 +42,7 @@ void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
 
 void LiveOutputs::Tick(OnlineMapper* mapper) {
   if (const auto scans = refresher_->TakeSaved()) events_->Saved(*scans);
-  if (status_.scans > refreshed_scans_ && refresher_->IsDue()) Refresh(*mapper->slam());
+  if (refresher_->IsDue() && status_.scans > refreshed_scans_) Refresh(*mapper->slam());
   if (Clock::now() >= next_status_) PublishStatus(mapper);
   events_->Flush();
 }

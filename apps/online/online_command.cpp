@@ -75,9 +75,9 @@ class SourceThread {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Waits for its end; throws what it ended with.
-  void Join() {
-    thread_.join();
+  /// After the end of the stream: throws what it ended with.
+  void RethrowProblem() {
+    if (thread_.joinable()) thread_.join();
     if (problem_) std::rethrow_exception(problem_);
   }
 
@@ -163,6 +163,7 @@ void OnlineCommand(OnlineOptions options) {
   SourceThread reading(source.get(), &queue);
   MapStream(&queue, &session, &live, &bar);
   session.End();
+  if (session.mapper()->log().scans == 0) reading.RethrowProblem();
   RequireScans(source->name(), session.mapper()->log());
   live.StopRefreshing();
   folder.journal()->Sync();
@@ -172,7 +173,7 @@ void OnlineCommand(OnlineOptions options) {
   events.Flush();
   live.Finish();
   PrintSummary(options, report);
-  reading.Join();
+  reading.RethrowProblem();
 }
 
 }  // namespace loopgrid

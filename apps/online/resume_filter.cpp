@@ -14,7 +14,11 @@ std::uint64_t HashOf(const ReceivedLine& line) {
   return line.too_long ? kTooLong : std::hash<std::string_view>()(line.text);
 }
 
-bool IsLaserLine(const ReceivedLine& line) { return IsLaser(TagOf(line.text)); }
+/// Malformed ones may well repeat, they tell nothing.
+bool IsLaserLine(const ReceivedLine& line) {
+  CarmenLaserMessage ignored;
+  return IsLaser(TagOf(line.text)) && ParseLaserLine(line.text, &ignored).empty();
+}
 
 }  // namespace
 

@@ -11,12 +11,12 @@
 namespace loopgrid {
 
 /// Knows again what a sender sends once more after a session was resumed, from the beginning or
-/// from anywhere, so that no line counts twice. The first laser line of the stream is looked up
-/// among the journal's: at the same place if the stream begins like the session, else the latest
-/// place from where the lines go on alike to the journal's end, else where they stay alike longest.
-/// From there stream and journal are compared line by line; what differs or lies beyond is new, and
-/// so is everything if the first laser line is. Lines that a log repeats within what was sent
-/// twice may thus be passed over or doubled; distinct ones never are.
+/// from anywhere, so that no line counts twice. The first well-formed laser line of the stream is
+/// looked up among the journal's: at the same place if the stream begins like the session, else the
+/// latest place from where the lines go on alike to the journal's end, else where they stay alike
+/// longest. From there stream and journal are compared line by line; what differs or lies beyond is
+/// new, and so is everything if the first laser line is. Lines that a log repeats within what was
+/// sent twice may thus be passed over or doubled; distinct ones never are.
 class ResumeFilter {
  public:
   using PassOn = std::function<void(ReceivedLine)>;

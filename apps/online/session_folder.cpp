@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
+#include "apps/run_outputs.h"
 #include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
 #include "backend/base/line_reader.h"
@@ -56,8 +60,12 @@ void Adopt(const char* name, const Value& stored, const OnlineOptions& options, 
 }
 
 bool IsLeftover(const std::string& name) {
+  std::vector<std::string> ours = RunOutputNames();
+  ours.insert(ours.end(), {kJournal, kSession});
   return name.starts_with(".loopgrid-unfinished-") ||
-         (name.starts_with('.') && name.find(".tmp-") != name.npos);
+         std::any_of(ours.begin(), ours.end(), [&name](const std::string& file) {
+           return name.starts_with("." + file + ".tmp-");
+         });
 }
 
 /// What a killed process has left unfinished.
@@ -85,11 +93,16 @@ SessionFolder::SessionFolder(OnlineOptions* options, OutputDirectory* outputs)
   if (resumed && !fs::exists(File(kSession))) {
     throw Error(ErrorCode::kInput, path_ + ": holds no session to resume");
   }
-  if (!resumed) outputs->Prepare();
-  Lock();
-  if (resumed) {
+  std::error_code ignored;
+  if (fs::is_directory(path_, ignored)) {
+    Lock();
     RemoveLeftovers(path_);
     outputs->Prepare();
+  } else {
+    outputs->Prepare();
+    Lock();
+  }
+  if (resumed) {
     Resume(options);
   } else {
     Begin(*options);

@@ -1,5 +1,6 @@
 #include "apps/online/resume_filter.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +41,9 @@ Lines NewLines(const Lines& journal, const Lines& stream) {
   return passed;
 }
 
-bool IsLaserText(const std::string& line) { return line.starts_with("FLASER"); }
+std::string Laser(int number) { return fmt::format("FLASER 1 5 0 0 0 0 0 0 {0} h {0}", number); }
+
+bool IsLaserText(const std::string& line) { return line.starts_with("FLASER 1 5"); }
 
 std::size_t CommonPrefix(const Lines& a, std::size_t a_begin, const Lines& b, std::size_t b_begin) {
   std::size_t count = 0;
@@ -126,8 +129,8 @@ Lines DistinctLog(int scans) {
   Lines lines = {"# header", "PARAM a 1", "", ""};
   for (int i = 0; i < scans; ++i) {
     lines.push_back("ODOM " + std::to_string(i / 2));
-    lines.push_back("FLASER " + std::to_string(i));
-    if (i % 3 == 1) lines.push_back("SYNC");
+    lines.push_back(Laser(i));
+    if (i % 3 == 1) lines.push_back("FLASER 3 1 2");
   }
   return lines;
 }
@@ -154,8 +157,8 @@ TEST(ResumeFilter, StreamThatEndsWithinTheJournalBringsNothingNew) {
 }
 
 TEST(ResumeFilter, LogOfARobotThatStandsStillIsSentAgainWithoutASeam) {
-  const Lines still = {"# header", "FLASER 1", "FLASER 1", "FLASER 1", "FLASER 2",
-                       "FLASER 2", "ODOM 2",   "FLASER 2", "FLASER 3", "FLASER 3"};
+  const Lines still = {"# header", Laser(1), Laser(1), Laser(1), Laser(2),
+                       Laser(2),   "ODOM 2", Laser(2), Laser(3), Laser(3)};
   for (std::size_t end = 0; end <= still.size(); ++end) {
     const Lines journal = Slice(still, 0, end);
     EXPECT_EQ(journal + NewLines(journal, still), still) << end;
@@ -168,7 +171,7 @@ TEST(ResumeFilter, CutsOfRepeatingLogsDifferAtMostInHowOftenALineRepeats) {
     Lines log;
     for (int i = 0; i < 6; ++i) {
       const auto times = 1 + random.Index(3);
-      log.insert(log.end(), times, "FLASER " + std::to_string(i));
+      log.insert(log.end(), times, Laser(i));
     }
     const auto end = random.Index(log.size() + 1);
     const auto begin = random.Index(end + 1);
@@ -183,7 +186,7 @@ TEST(ResumeFilter, CutsOfRepeatingLogsDifferAtMostInHowOftenALineRepeats) {
 
 TEST(ResumeFilter, DecidesAsDescribedWhateverTheLines) {
   PortableRandom random(4);
-  const Lines words = {"FLASER a", "FLASER b", "FLASER c", "ODOM", "#"};
+  const Lines words = {Laser(1), Laser(2), Laser(3), "ODOM", "#", "FLASER 3 1 2"};
   const auto random_lines = [&] {
     Lines lines(random.Index(12));
     for (std::string& line : lines) {
@@ -215,24 +218,24 @@ TEST(ResumeFilter, LinesOfEarlierSessionsAreNotLookedUp) {
 }
 
 TEST(ResumeFilter, HeaderThatIsNotInTheJournalIsNew) {
-  EXPECT_THAT(NewLines({"# a", "FLASER 1", "FLASER 2"}, {"# b", "FLASER 2", "FLASER 3"}),
-              ElementsAre("# b", "FLASER 3"));
+  EXPECT_THAT(NewLines({"# a", Laser(1), Laser(2)}, {"# b", Laser(2), Laser(3)}),
+              ElementsAre("# b", Laser(3)));
 }
 
 TEST(ResumeFilter, LinesThatAreTooLongAreKnownAgain) {
   ResumeFilter filter;
   filter.AddJournalLine({.text = "", .too_long = true});
-  filter.AddJournalLine({.text = "FLASER 1"});
+  filter.AddJournalLine({.text = Laser(1)});
   const auto pass_on = [](const ReceivedLine& line) { ADD_FAILURE() << line.text; };
   filter.Add({.text = "", .too_long = true}, pass_on);
-  filter.Add({.text = "FLASER 1"}, pass_on);
+  filter.Add({.text = Laser(1)}, pass_on);
   EXPECT_TRUE(filter.done());
   EXPECT_EQ(filter.known_lines(), 2);
 }
 
 TEST(ResumeFilter, HoldsNoMoreThanItMay) {
   ResumeFilter filter;
-  filter.AddJournalLine({.text = "FLASER 1"});
+  filter.AddJournalLine({.text = Laser(1)});
   std::size_t given = 0;
   std::size_t passed = 0;
   const auto pass_on = [&passed](const ReceivedLine&) { ++passed; };
@@ -242,7 +245,7 @@ TEST(ResumeFilter, HoldsNoMoreThanItMay) {
     ++given;
   }
   EXPECT_EQ(passed, given);
-  filter.Add({.text = "FLASER 1"}, pass_on);
+  filter.Add({.text = Laser(1)}, pass_on);
   EXPECT_EQ(passed, given + 1);
 }
 
