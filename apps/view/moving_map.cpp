@@ -55,7 +55,9 @@ bool MovingMap::Draw(const Entry& entry, const SE2& T_map_node, OccupancyGrid* g
 void MovingMap::AddScan(const ScanOnMap& scan) {
   const SE2& T_map_node = NodePose(scan);
   scans_.push_back({scan.place, scan.points});
-  drawn_nodes_.insert(drawn_nodes_.end(), nodes_.begin() + drawn_nodes_.size(), nodes_.end());
+  for (std::size_t i = drawn_nodes_.size(); i < nodes_.size(); ++i) {
+    drawn_nodes_.push_back(nodes_[i]);
+  }
   if (!scan.localized) return;
   outdated_ = outdated_ || drawable_ + 1 < scans_.size();  // those that have waited are drawn now
   drawable_ = scans_.size();

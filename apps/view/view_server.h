@@ -29,7 +29,8 @@ class ViewServer {
   std::string url() const;   ///< of the page
   bool is_loopback() const;  ///< false: other machines can reach it
 
-  /// Hands an update to all viewers. Returns at once.
+  /// Hands an update to all viewers; one with a negative index of the scan tells of nodes and
+  /// closures only. Returns at once.
   void Add(const OnlineUpdate& update);
 
   /// Tells all viewers that nothing more will come, and waits until they have been sent everything,

@@ -90,12 +90,16 @@ ViewState::ViewState(std::string run, double resolution)
     : run_(std::move(run)), resolution_(resolution) {}
 
 void ViewState::Apply(const OnlineUpdate& update) {
+  if (update.tracked.scan >= 0) TakeScan(update);
+  if (update.nodes != nullptr) TakeNodes(*update.nodes);
+  for (const ClosureRecord& record : update.closures) TakeClosure(record);
+}
+
+void ViewState::TakeScan(const OnlineUpdate& update) {
   const TrackedScan& tracked = update.tracked;
   scans_ = std::max(scans_, std::int64_t{tracked.scan} + 1);
   if (!tracked.matched) ++unmatched_;
   if (tracked.node >= static_cast<int>(nodes_.size())) AddNode(tracked.T_map_robot);
-  if (update.nodes != nullptr) TakeNodes(*update.nodes);
-  for (const ClosureRecord& record : update.closures) TakeClosure(record);
   last_pose_ = PoseJson(update);
   poses_.push_back(last_pose_);
   if (poses_.size() > kMaxPoses) poses_.pop_front();
@@ -188,8 +192,6 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
   }
   if (!poses_.empty()) {
     text += Event("poses", fmt::format(R"({{"poses":[{}]}})", fmt::join(poses_, ",")));
-    text += Event("counters", CountersJson());
-    poses_.clear();
   }
   if (!changed_closures_.empty()) {
     std::vector<std::string> changed;
@@ -198,8 +200,10 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
       changed.push_back(ClosureJson(closure.id, closure.record));
     }
     text += Event("closures", fmt::format(R"({{"closures":[{}]}})", fmt::join(changed, ",")));
-    changed_closures_.clear();
   }
+  if (!poses_.empty() || !changed_closures_.empty()) text += Event("counters", CountersJson());
+  poses_.clear();
+  changed_closures_.clear();
   if (!tiles.empty()) text += Event("tiles", fmt::format(R"({{"tiles":{}}})", TilesJson(tiles)));
   if (ended_ && !end_told_) text += Event("end", "{}");
   end_told_ = ended_;

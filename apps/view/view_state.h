@@ -21,6 +21,7 @@ class ViewState {
   /// `run` tells one run of the program from another; `resolution` is that of the map, metres.
   ViewState(std::string run, double resolution);
 
+  /// Takes a scan and what it has changed; if its index is negative, only nodes and closures.
   void Apply(const OnlineUpdate& update);
 
   /// Nothing more will come.
@@ -49,6 +50,7 @@ class ViewState {
   using NodePair = std::pair<int, int>;
 
   static std::string PoseJson(const OnlineUpdate& update);
+  void TakeScan(const OnlineUpdate& update);
   void AddNode(const SE2& pose);
   void TakeNodes(const NodeStates& states);
   void TakeClosure(const ClosureRecord& record);

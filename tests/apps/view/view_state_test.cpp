@@ -115,6 +115,22 @@ TEST(ViewState, HoldsMovedNodesBackButNotNewOnes) {
   EXPECT_EQ(state.TakeChanges({}, true), "");
 }
 
+TEST(ViewState, TakesMovedNodesWithoutAScan) {
+  RoundTrip trip(9);
+  ViewState state("a", 0.05);
+  for (int scan = 0; scan < 9; ++scan) state.Apply(trip.Update(scan));
+  const json before = SnapshotOf(state);
+  trip.MoveNodes(SE2(0.1, 0.0, 0.0));
+  OnlineUpdate moved = trip.UpdateWithNodes(8);
+  moved.tracked = TrackedScan();
+  moved.tracked.scan = -1;
+  state.Apply(moved);
+  const json after = SnapshotOf(state);
+  EXPECT_EQ(after["pose"], before["pose"]);
+  EXPECT_EQ(after["counters"], before["counters"]);
+  EXPECT_NE(after["nodes"], before["nodes"]);
+}
+
 TEST(ViewState, TurnsCovariancesIntoTheMapFrame) {
   OnlineUpdate update;
   update.tracked.T_map_robot = SE2(1.0, 2.0, 0.5 * std::numbers::pi);
