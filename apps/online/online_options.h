@@ -21,7 +21,7 @@ struct OnlineOptions {
   std::string view;       ///< [HOST:]PORT of the page
   std::string events;     ///< file for the events, `-`: standard output
   double interval = 5.0;  ///< seconds between two refreshes of the files
-  int threads = 1;        ///< 1: the mapper does everything in one thread
+  int threads = 2;        ///< 1: the mapper does everything in one thread
 
   /// Which options that decide the result were given; the others come from a resumed session.
   std::set<std::string> given;

@@ -71,6 +71,44 @@ TEST(CommandLine, ReplayTakesALogAndEveryOptionReachesItsField) {
   EXPECT_EQ(replay.from_line, 20);
 }
 
+TEST(CommandLine, OnlineTakesAFolderAndHasDefaultsForAllElse) {
+  const auto online = std::get<OnlineOptions>(Parse({"online", "--out", "a"}));
+  EXPECT_EQ(online.run.out, "a");
+  for (const std::string* option : {&online.follow, &online.listen, &online.connect, &online.resume,
+                                    &online.continued, &online.view, &online.events}) {
+    EXPECT_EQ(*option, "");
+  }
+  EXPECT_FALSE(online.once || online.run.strict || online.run.quiet);
+  EXPECT_EQ(online.interval, 5.0);
+  EXPECT_EQ(online.threads, 2);
+  EXPECT_TRUE(online.given.empty());
+  EXPECT_NO_THROW(online.Validate());
+}
+
+TEST(CommandLine, EveryOptionOfOnlineReachesItsField) {
+  const auto online = std::get<OnlineOptions>(
+      Parse({"online",          "--listen", "h:1",          "--once", "--out",        "a",
+             "--continue",      "b",        "--view",       "8080",   "--events",     "-",
+             "--interval",      "2",        "--threads",    "1",      "--resolution", "0.1",
+             "--node-distance", "0.7",      "--node-angle", "0.3",    "--strict",     "--quiet"}));
+  EXPECT_EQ(online.listen, "h:1");
+  EXPECT_TRUE(online.once && online.run.strict && online.run.quiet);
+  EXPECT_EQ(online.continued, "b");
+  EXPECT_EQ(online.view, "8080");
+  EXPECT_EQ(online.events, "-");
+  EXPECT_EQ(online.interval, 2.0);
+  EXPECT_EQ(online.threads, 1);
+  EXPECT_EQ(online.run.resolution, 0.1);
+  EXPECT_EQ(online.run.slam.node_distance, 0.7);
+  EXPECT_EQ(online.run.slam.node_angle, 0.3);
+  EXPECT_THAT(online.given, ::testing::UnorderedElementsAre("resolution", "node_distance",
+                                                            "node_angle", "strict"));
+  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--follow", "f", "--out", "a"})).follow, "f");
+  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--connect", "c:2", "--out", "a"})).connect,
+            "c:2");
+  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--resume", "r"})).resume, "r");
+}
+
 TEST(CommandLine, EvalTakesTwoFiles) {
   const auto eval = std::get<EvalOptions>(Parse({"eval", "a.tum", "b.relations", "--json"}));
   EXPECT_EQ(eval.estimate, "a.tum");

@@ -55,8 +55,9 @@ void ExpectReadmeNamesEveryOptionOf(const char* command, int at_least) {
   EXPECT_GE(options, at_least);
 }
 
-TEST(Readme, NamesEveryOptionOfRunOptimizeAndReplay) {
+TEST(Readme, NamesEveryOptionOfRunOnlineOptimizeAndReplay) {
   ExpectReadmeNamesEveryOptionOf("run", 5);
+  ExpectReadmeNamesEveryOptionOf("online", 16);
   ExpectReadmeNamesEveryOptionOf("optimize", 16);
   ExpectReadmeNamesEveryOptionOf("replay", 4);
 }
