@@ -83,14 +83,13 @@ class Scene {
 
   // Made once for each state of the graph; the canvas scales them.
   graphPaths(world) {
-    if (this.paths?.world === world && this.paths.changes === world.changes) return this.paths;
+    const {paths} = this;
+    if (paths?.world === world && paths.changes === world.graphChanges) return paths;
     const [path, closed] = [new Path2D(), new Path2D()];
     for (const [x, y, , , , , , linked] of world.nodes) {
       if (linked) path.lineTo(x, y);
       else path.moveTo(x, y);
     }
-    if (!world.tailJoined && world.tail.length > 0) path.moveTo(...world.tail[0]);
-    for (const [x, y] of world.tail) path.lineTo(x, y);
     for (const closure of world.closures.values()) {
       if (closure.outcome !== 'accepted') continue;
       const [from, to] = [world.nodes[closure.from], world.nodes[closure.to]];
@@ -98,7 +97,7 @@ class Scene {
       closed.moveTo(from[0], from[1]);
       closed.lineTo(to[0], to[1]);
     }
-    this.paths = {world, changes: world.changes, path, closed};
+    this.paths = {world, changes: world.graphChanges, path, closed};
     return this.paths;
   }
 
@@ -111,12 +110,23 @@ class Scene {
     context.globalAlpha = 0.75;
     context.lineWidth = this.pixels(1.5);
     context.stroke(path);
+    this.strokeTail(world);
     context.strokeStyle = palette.closed;
     context.lineWidth = this.pixels(1.8);
     context.globalAlpha = 0.8;
     context.stroke(closed);
     context.globalAlpha = 1;
     if (this.camera.scale > 14) this.drawNodes(world);
+  }
+
+  // From the last node to the robot.
+  strokeTail(world) {
+    const {context} = this;
+    const last = world.nodes[world.nodes.length - 1];
+    context.beginPath();
+    if (last && world.tailJoined) context.moveTo(last[0], last[1]);
+    for (const [x, y] of world.tail) context.lineTo(x, y);
+    context.stroke();
   }
 
   drawNodes(world) {

@@ -10,6 +10,8 @@ const GREY_FREE = 254;
 
 class Tiles {
   constructor() {
+    this.changes = 0;         // rises with every change
+    this.frozen = false;      // what is on the screen stays as it is
     this.reset('', 0.05);
   }
 
@@ -18,8 +20,7 @@ class Tiles {
     this.resolution = resolution;
     this.tiles = new Map();   // 'level/x/y' -> tile
     this.fetches = 0;
-    this.changes = 0;
-    this.frozen = false;
+    ++this.changes;
   }
 
   /** Versions of tiles as in the events: [level, x, y, version]. */

@@ -6,10 +6,13 @@ const TAIL = 400;       // scans drawn since the last node: in known space there
 const LATENCIES = 200;  // scans that the figures are about
 const FLASH = 1600;     // milliseconds that a closure lights up
 const FLASHES = 12;     // at a time
+const REFUSED = 200;    // closures remembered, the newest
 
 class World {
   constructor() {
     this.run = '';
+    this.changes = 0;       // rises with every change
+    this.graphChanges = 0;  // ... of nodes and closures
     this.clear();
   }
 
@@ -26,7 +29,8 @@ class World {
     this.clock = null;    // where log time and real time were compared
     this.speed = 0;       // log seconds a second
     this.ended = false;
-    this.changes = 0;     // rises with every change
+    ++this.changes;
+    ++this.graphChanges;
   }
 
   /** Everything anew. True if it is another run of the program. */
@@ -44,8 +48,10 @@ class World {
   }
 
   takeNodes({first, nodes}) {
-    this.nodes.splice(first, nodes.length, ...nodes);
+    this.nodes.length = Math.min(this.nodes.length, first);
+    for (const node of nodes) this.nodes.push(node);
     ++this.changes;
+    ++this.graphChanges;
   }
 
   takePoses(poses) {
@@ -86,7 +92,14 @@ class World {
         this.flash(closure.id);
       }
     }
+    this.forgetRefused();
     ++this.changes;
+    ++this.graphChanges;
+  }
+
+  forgetRefused() {
+    const refused = [...this.closures.values()].filter((one) => verdict(one) === 'refused');
+    for (const {id} of refused.slice(0, -REFUSED)) this.closures.delete(id);
   }
 
   flash(id) {
