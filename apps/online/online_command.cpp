@@ -33,6 +33,11 @@ namespace {
 
 void Note(const std::string& text) { std::fprintf(stderr, "loopgrid: %s\n", text.c_str()); }
 
+void CompleteOptions(OnlineOptions* options) {
+  if (!options->resume.empty()) options->run.out = options->resume;
+  options->run.slam.threads = options->threads;
+}
+
 std::unique_ptr<LineSource> OpenListenSource(const OnlineOptions& options) {
   const HostPort address = ParseHostPort(options.listen);
   auto source = std::make_unique<ListenSource>(
@@ -55,12 +60,15 @@ std::unique_ptr<LineSource> OpenSource(const OnlineOptions& options) {
   return std::make_unique<PipeSource>(STDIN_FILENO, "standard input");
 }
 
-void TellOfPage(const OnlineOptions& options, const ViewServer* view) {
-  if (view == nullptr) return;
-  if (!view->is_loopback()) {
-    Note("WARNING: " + view->url() + " is open to other machines: whoever can reach it can watch");
+void Introduce(const OnlineOptions& options, const LineSource& source, const ViewServer* view,
+               EventWriter* events) {
+  const std::string page = view == nullptr ? "" : view->url();
+  if (view != nullptr && !view->is_loopback()) {
+    Note("WARNING: " + page + " is open to other machines: whoever can reach it can watch");
   }
-  if (!options.run.quiet) Note("the page is at " + view->url());
+  if (view != nullptr && !options.run.quiet) Note("the page is at " + page);
+  events->Start(options, source.name(), page);
+  events->Flush();
 }
 
 /// Runs a source on a thread of its own.
@@ -109,11 +117,15 @@ void MapStream(LineQueue* queue, OnlineSession* session, LiveOutputs* live, Prog
   }
 }
 
-RunReport ReportOn(const RunOptions& options, const OnlineMapper& mapper) {
+/// Leaves the files of a run.
+RunReport WriteFiles(const Stopwatch& stopwatch, const RunOptions& options, Journal* journal,
+                     OnlineMapper* mapper, OutputDirectory* outputs, ProgressBar* bar) {
+  journal->Sync();
   RunReport report;
   report.options = options;
-  report.log = mapper.log();
-  report.data_seconds = mapper.data_seconds();
+  report.log = mapper->log();
+  report.data_seconds = mapper->data_seconds();
+  FinishRun(stopwatch, mapper->slam(), outputs, bar, &report);
   return report;
 }
 
@@ -131,9 +143,7 @@ void PrintSummary(const OnlineOptions& options, const RunReport& report) {
 void OnlineCommand(OnlineOptions options) {
   const Stopwatch stopwatch;
   options.Validate();
-  const bool resumed = !options.resume.empty();
-  if (resumed) options.run.out = options.resume;
-  options.run.slam.threads = options.threads;
+  CompleteOptions(&options);
   const std::unique_ptr<LineSource> source = OpenSource(options);
   OutputDirectory outputs(options.run.out, RunOutputNames());
   std::atomic<bool> stopped = false;
@@ -151,14 +161,12 @@ void OnlineCommand(OnlineOptions options) {
   EventWriter events = options.events.empty() ? EventWriter() : EventWriter(options.events);
   LineQueue queue;
   LiveOutputs live(options, source.get(), &queue, &events);
-  TellOfPage(options, live.view());
-  events.Start(options, source->name(), live.view() == nullptr ? "" : live.view()->url());
-  events.Flush();
+  Introduce(options, *source, live.view(), &events);
   ProgressBar bar(options.run.quiet);
   OnlineSession session(
       options.run, folder.journal(), &events,
       [&live](const OnlineUpdate& update, bool is_new) { live.Add(update, is_new); });
-  session.Replay(resumed);
+  session.Replay(!options.resume.empty());
 
   SourceThread reading(source.get(), &queue);
   MapStream(&queue, &session, &live, &bar);
@@ -166,9 +174,8 @@ void OnlineCommand(OnlineOptions options) {
   if (session.mapper()->log().scans == 0) reading.RethrowProblem();
   RequireScans(source->name(), session.mapper()->log());
   live.StopRefreshing();
-  folder.journal()->Sync();
-  RunReport report = ReportOn(options.run, *session.mapper());
-  FinishRun(stopwatch, session.mapper()->slam(), &outputs, &bar, &report);
+  const RunReport report =
+      WriteFiles(stopwatch, options.run, folder.journal(), session.mapper(), &outputs, &bar);
   events.End(report.log.lines, report.log.scans, stopped);
   events.Flush();
   live.Finish();
