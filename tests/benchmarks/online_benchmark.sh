@@ -11,7 +11,7 @@ speed=${1:-50} passes=${2:-1} threads=${3:-2}
 program=${PROGRAM:-build/ci/apps/loopgrid}
 log=${LOG:-${LOOPGRID_DATA:?names the folder of recordings}/logs/intel.clf}
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
 
 "$program" online --listen 127.0.0.1:0 --once --quiet --threads "$threads" \
   --out "$folder/live" --events "$folder/events" >"$folder/summary" &
