@@ -135,7 +135,7 @@ TEST(OnlineSession, ResumedAtAnyByteItEndsAsIfNeverInterrupted) {
   whole.SendAll(log);
   whole.End();
   PortableRandom random(5);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 25; ++round) {
     SCOPED_TRACE(round);
     const TemporaryDirectory folder;
     std::size_t cut = 0;
