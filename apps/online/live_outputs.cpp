@@ -1,5 +1,7 @@
 #include "apps/online/live_outputs.h"
 
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "apps/run_outputs.h"
@@ -8,6 +10,11 @@ namespace loopgrid {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenStatuses(250);
+
+std::string ReadWholeFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 LiveMapOptions MapOptions(const OnlineOptions& options) {
   LiveMapOptions map;
@@ -49,8 +56,19 @@ void LiveOutputs::Tick(OnlineMapper* mapper) {
 
 void LiveOutputs::StopRefreshing() { refresher_.reset(); }
 
-void LiveOutputs::Finish() {
-  if (view_) view_->Finish();
+void LiveOutputs::Finish(const Slam& slam, const std::string& folder) {
+  if (!view_) return;
+  OnlineUpdate result;
+  result.tracked.scan = -1;  // none: all nodes have moved for the last time
+  result.nodes = std::make_shared<NodeStates>(
+      NodeStates{.poses = slam.graph().poses, .covariances = slam.NodeCovariances()});
+  map_.Add(result);
+  view_->Add(result);
+  map_.WaitUntilCurrent();
+  for (const char* name : {"map.png", "map.pgm", "map.yaml", "trajectory.tum", "graph.g2o"}) {
+    published_.Put(name, std::make_shared<const std::string>(ReadWholeFile(folder + "/" + name)));
+  }
+  view_->Finish();
 }
 
 void LiveOutputs::Refresh(const Slam& slam) {

@@ -38,8 +38,8 @@ class LiveOutputs {
   /// Files are not refreshed any more.
   void StopRefreshing();
 
-  /// Nothing more comes: viewers are told.
-  void Finish();
+  /// Nothing more comes: viewers get the result, and the files that `folder` has now.
+  void Finish(const Slam& slam, const std::string& folder);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -178,7 +178,7 @@ void OnlineCommand(OnlineOptions options) {
       WriteFiles(stopwatch, options.run, folder.journal(), session.mapper(), &outputs, &bar);
   events.End(report.log.lines, report.log.scans, stopped);
   events.Flush();
-  live.Finish();
+  live.Finish(*session.mapper()->slam(), options.run.out);
   PrintSummary(options, report);
   reading.RethrowProblem();
 }
