@@ -1,5 +1,7 @@
 #include "apps/online/live_outputs.h"
 
+#include <malloc.h>
+
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -30,8 +32,8 @@ LiveOutputs::LiveOutputs(const OnlineOptions& options, const LineSource* source,
       queue_(queue),
       events_(events),
       map_(MapOptions(options)),
-      refresher_(
-          std::make_unique<Refresher>(options.run.out, options.interval, &map_, &published_)) {
+      refresher_(std::make_unique<Refresher>(options.run.out, options.interval, &map_,
+                                             options.view.empty() ? nullptr : &published_)) {
   status_.source = source_->name();
   if (options.view.empty()) return;
   view_ = std::make_unique<ViewServer>(ParseViewAddress(options.view), &map_, &published_);
@@ -43,6 +45,8 @@ void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
   ++status_.scans;
   if (update.tracked.node >= 0) ++status_.nodes;
   if (!update.tracked.matched) ++status_.unmatched;
+  // The search for the robot has taken much memory that is free again.
+  if (update.tracked.localized && !status_.localized) malloc_trim(0);
   status_.localized = update.tracked.localized;
   if (is_new) status_.latency.Add(update.latency_seconds);
 }

@@ -1,5 +1,6 @@
 #include "apps/online/online_command.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -143,6 +144,10 @@ void PrintSummary(const OnlineOptions& options, const RunReport& report) {
 void OnlineCommand(OnlineOptions options) {
   const Stopwatch stopwatch;
   options.Validate();
+  // What one thread allocates another frees here; with a pool for each thread, and large blocks in
+  // them, free memory would pile up.
+  mallopt(M_ARENA_MAX, 2);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
   CompleteOptions(&options);
   const std::unique_ptr<LineSource> source = OpenSource(options);
   OutputDirectory outputs(options.run.out, RunOutputNames());

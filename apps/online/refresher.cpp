@@ -80,6 +80,7 @@ void Refresher::Write(const RefreshContent& content) const {
 
 void Refresher::WriteOne(const std::string& name, std::string content) const {
   WriteFileAtomically(folder_ + "/" + name, content);
+  if (published_ == nullptr) return;
   published_->Put(name, std::make_shared<const std::string>(std::move(content)));
 }
 

@@ -26,7 +26,7 @@ struct RefreshContent {
 /// goes on, each whole or not at all, on a thread of its own.
 class Refresher {
  public:
-  /// `map` and `published` must live longer. `interval` in seconds.
+  /// `map` and `published` must live longer; `published` may be null. `interval` in seconds.
   Refresher(std::string folder, double interval, LiveMap* map, PublishedFiles* published);
 
   /// Waits for the files that are being written.

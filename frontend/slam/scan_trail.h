@@ -21,7 +21,7 @@ struct ScanEntry {
   SE2 T_odom_robot;                         ///< as in the log
   SE2 T_robot_laser;                        ///< where the laser sits
   ScanPlace place;                          ///< in the graph
-  std::shared_ptr<const PointScan> points;  ///< null in known space
+  std::shared_ptr<const PointScan> points;  ///< null if the map does not need them
 };
 
 /// All scans of a run with their places, and which of them are nodes.

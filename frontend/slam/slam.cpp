@@ -23,6 +23,11 @@ namespace {
 constexpr int kTrackedNodes = 20;         // whose scans tracking matches with
 constexpr double kUnmatchedFactor = 4.0;  // of the odometry's covariance where a match failed
 
+// Scans nearer to each other than this are taken on one spot ...
+constexpr double kSpotDistance = 0.05;  // metres
+constexpr double kSpotAngle = 0.05;     // radians
+constexpr int kScansOnASpot = 10;       // ... and more of them add nothing to the map
+
 // Between two scans; no robot drives as far, so it was carried, or its odometry started anew.
 constexpr double kCarried = 10.0;            // metres
 constexpr double kFarthestCarried = 1000.0;  // metres; beyond, the odometry says nothing at all
@@ -73,9 +78,9 @@ class Slam::Impl {
         ComposeCovariances(graph_.covariance(reference_), T_reference_robot_, covariance_);
     result.localized = graph_.localized();
     scans_.back().place = {reference_, T_reference_robot_};
-    if (is_known_) {
+    if (is_known_) ++statistics_.known_scans;
+    if (result.node < 0 && (is_known_ || IsOnTheSpot(result.T_map_robot))) {
       scans_.back().points.reset();
-      ++statistics_.known_scans;
     }
     return result;
   }
@@ -103,6 +108,16 @@ class Slam::Impl {
 
  private:
   SE2 T_map_robot() const { return graph_.pose(reference_) * T_reference_robot_; }
+
+  // Whether the map has enough scans from here: a robot may be parked for hours.
+  bool IsOnTheSpot(const SE2& pose) {
+    const SE2 motion = spot_.Inverse() * pose;
+    if (motion.translation().norm() > kSpotDistance || std::abs(motion.theta()) > kSpotAngle) {
+      spot_ = pose;
+      scans_on_spot_ = 0;
+    }
+    return ++scans_on_spot_ > kScansOnASpot;
+  }
 
   // The first node; or the robot may be anywhere now, and a new chain of nodes begins that is tied
   // to the rest by what little is known.
@@ -259,7 +274,9 @@ class Slam::Impl {
   int reference_scan_ = 0;                                // the first one with this reference
   SE2 motion_since_reference_;                            // odometry
   double travel_ = 0.0;                                   // since the last node, metres
-  double inlier_share_ = 0.0;                             // of the latest match
+  SE2 spot_;                                              // where it was when it last moved
+  int scans_on_spot_ = 0;
+  double inlier_share_ = 0.0;  // of the latest match
   std::int64_t steps_ = 0;
 
   std::deque<int> tracked_;  // nodes that make the tracking map

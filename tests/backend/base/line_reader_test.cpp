@@ -96,7 +96,9 @@ TEST(LineReader, ALineOfTheMaximumLengthIsNotTooLong) {
 }
 
 TEST(LineReader, PassesOverLinesLongerThanItsBuffer) {
-  const std::string content = std::string(3'000'000, 'x') + "\nshort\n" + std::string(500'000, 'y');
+  std::string content(3'000'000, 'x');
+  content += "\nshort\n";
+  content.append(500'000, 'y');
   EXPECT_THAT(ReadLines(content, 1000),
               ElementsAre(Line{"", true}, Line{"short"}, Line{"", true, false}));
 }
