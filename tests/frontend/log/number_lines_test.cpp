@@ -54,7 +54,9 @@ TEST(NextNumberLine, RefusesAnyOtherLineWithItsNumber) {
 }
 
 TEST(NextNumberLine, RefusesALineTooLong) {
-  const MemoryFile file(std::string(LineReader::kMaxLineLength + 10, '1') + " 2\n");
+  std::string line(LineReader::kMaxLineLength + 10, '1');
+  line += " 2\n";
+  const MemoryFile file(line);
   LineReader lines(file.path());
   std::array<double, 2> numbers{};
   EXPECT_THAT([&] { NextNumberLine(&lines, numbers); },
