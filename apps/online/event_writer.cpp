@@ -39,28 +39,6 @@ std::string Line(const Json& event) {
   return event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-const char* Reason(ClosureOutcome outcome) {
-  switch (outcome) {
-    case ClosureOutcome::kPending:
-      return "matched, waits for others that agree with it";
-    case ClosureOutcome::kAccepted:
-      return "in the graph";
-    case ClosureOutcome::kLowScore:
-      return "the scans do not fit well enough";
-    case ClosureOutcome::kAmbiguous:
-      return "a second place fits nearly as well";
-    case ClosureOutcome::kContradicted:
-      return "beams would have gone through walls";
-    case ClosureOutcome::kUnconstrained:
-      return "the fit leaves the place open";
-    case ClosureOutcome::kInconsistent:
-      return "no others agree with it";
-    case ClosureOutcome::kRejected:
-      return "taken out again: it does not fit the rest of the graph";
-  }
-  return "";
-}
-
 }  // namespace
 }  // namespace loopgrid
 
@@ -110,7 +88,7 @@ void AddClosure(const ClosureRecord& closure, std::string* text) {
                  R"("chi2":{:.4g},"reason":"{}"}})"
                  "\n",
                  closure.from, closure.to, ToString(closure.outcome), Number{closure.score},
-                 Number{closure.chi2}, Reason(closure.outcome));
+                 Number{closure.chi2}, Explain(closure.outcome));
 }
 
 }  // namespace

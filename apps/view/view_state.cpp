@@ -40,28 +40,6 @@ std::string Coordinates(const SE2& pose) {
   return fmt::format("{},{},{}", Number(pose.x(), 3), Number(pose.y(), 3), Number(pose.theta(), 4));
 }
 
-const char* ReasonOf(ClosureOutcome outcome) {
-  switch (outcome) {
-    case ClosureOutcome::kPending:
-      return "waits for others that agree with it";
-    case ClosureOutcome::kAccepted:
-      return "others agree with it: it is in the graph";
-    case ClosureOutcome::kLowScore:
-      return "the scans do not fit well enough";
-    case ClosureOutcome::kAmbiguous:
-      return "a second place fits nearly as well";
-    case ClosureOutcome::kContradicted:
-      return "beams would have gone through walls";
-    case ClosureOutcome::kUnconstrained:
-      return "the fit leaves the place open, as in a bare corridor";
-    case ClosureOutcome::kInconsistent:
-      return "no others agree with it";
-    case ClosureOutcome::kRejected:
-      return "taken out again: it contradicts the rest of the graph";
-  }
-  return "";
-}
-
 bool IsRefused(ClosureOutcome outcome) {
   return outcome != ClosureOutcome::kPending && outcome != ClosureOutcome::kAccepted;
 }
@@ -71,7 +49,7 @@ std::string ClosureJson(std::int64_t id, const ClosureRecord& record) {
       R"({{"id":{},"from":{},"to":{},"time":{},"outcome":"{}","reason":"{}","score":{},)"
       R"("distance":{},"distance_sigmas":{}}})",
       id, record.from, record.to, Number(record.timestamp, 3), ToString(record.outcome),
-      ReasonOf(record.outcome), Number(record.score, 3),
+      Explain(record.outcome), Number(record.score, 3),
       Number(record.T_from_to.translation().norm(), 2), Number(record.distance_sigmas, 2));
 }
 

@@ -24,4 +24,26 @@ const char* ToString(ClosureOutcome outcome) {
   return "unknown";
 }
 
+const char* Explain(ClosureOutcome outcome) {
+  switch (outcome) {
+    case ClosureOutcome::kPending:
+      return "waits for others that agree with it";
+    case ClosureOutcome::kAccepted:
+      return "others agree with it: it is in the graph";
+    case ClosureOutcome::kLowScore:
+      return "the scans do not fit well enough";
+    case ClosureOutcome::kAmbiguous:
+      return "a second place fits nearly as well";
+    case ClosureOutcome::kContradicted:
+      return "beams would have gone through walls";
+    case ClosureOutcome::kUnconstrained:
+      return "the fit leaves the place open, as in a bare corridor";
+    case ClosureOutcome::kInconsistent:
+      return "no others agree with it";
+    case ClosureOutcome::kRejected:
+      return "taken out again: it contradicts the rest of the graph";
+  }
+  return "";
+}
+
 }  // namespace loopgrid

@@ -21,6 +21,9 @@ enum class ClosureOutcome {
 /// The name written to closures.csv: "accepted", "low-score", ...
 const char* ToString(ClosureOutcome outcome);
 
+/// The reason in plain words, for whoever watches.
+const char* Explain(ClosureOutcome outcome);
+
 /// One closure tried: the audit trail.
 struct ClosureRecord {
   int from = 0;            ///< the old node
