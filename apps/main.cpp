@@ -9,14 +9,14 @@
 #include <string>
 #include <variant>
 
-#include "apps/command_line.h"
-#include "apps/eval_command.h"
+#include "apps/cli/command_line.h"
+#include "apps/eval/eval_command.h"
 #include "apps/online/online_command.h"
-#include "apps/optimize_command.h"
-#include "apps/plot_command.h"
-#include "apps/replay_command.h"
-#include "apps/run_command.h"
-#include "apps/standard_output.h"
+#include "apps/optimize/optimize_command.h"
+#include "apps/output/standard_output.h"
+#include "apps/plot/plot_command.h"
+#include "apps/replay/replay_command.h"
+#include "apps/run/run_command.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {

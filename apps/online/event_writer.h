@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/online/descriptor.h"
+#include "apps/live/online_update.h"
+#include "apps/net/descriptor.h"
 #include "apps/online/online_options.h"
-#include "apps/online/online_update.h"
 
 namespace loopgrid {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "apps/run_outputs.h"
+#include "apps/run/run_outputs.h"
 
 namespace loopgrid {
 namespace {

@@ -5,15 +5,15 @@
 #include <memory>
 #include <string>
 
+#include "apps/live/live_map.h"
+#include "apps/live/published_files.h"
+#include "apps/live/refresher.h"
 #include "apps/online/event_writer.h"
-#include "apps/online/line_queue.h"
-#include "apps/online/line_source.h"
 #include "apps/online/online_mapper.h"
 #include "apps/online/online_options.h"
 #include "apps/online/online_status.h"
-#include "apps/online/published_files.h"
-#include "apps/online/refresher.h"
-#include "apps/view/live_map.h"
+#include "apps/online/source/line_queue.h"
+#include "apps/online/source/line_source.h"
 #include "apps/view/view_server.h"
 
 namespace loopgrid {

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/arguments.h"
+#include "apps/cli/arguments.h"
 
 namespace loopgrid {
 namespace {

@@ -11,23 +11,23 @@
 #include <thread>
 #include <utility>
 
-#include "apps/finish_run.h"
-#include "apps/interrupt_watch.h"
-#include "apps/online/connect_source.h"
-#include "apps/online/follow_source.h"
-#include "apps/online/host_port.h"
-#include "apps/online/listen_source.h"
+#include "apps/cli/interrupt_watch.h"
+#include "apps/cli/progress_bar.h"
+#include "apps/net/host_port.h"
 #include "apps/online/live_outputs.h"
 #include "apps/online/online_session.h"
-#include "apps/online/pipe_source.h"
-#include "apps/online/session_folder.h"
-#include "apps/output_directory.h"
-#include "apps/progress_bar.h"
-#include "apps/report.h"
-#include "apps/run_outputs.h"
-#include "apps/standard_output.h"
-#include "apps/stopwatch.h"
+#include "apps/online/session/session_folder.h"
+#include "apps/online/source/connect_source.h"
+#include "apps/online/source/follow_source.h"
+#include "apps/online/source/listen_source.h"
+#include "apps/online/source/pipe_source.h"
+#include "apps/output/output_directory.h"
+#include "apps/output/standard_output.h"
+#include "apps/run/finish_run.h"
+#include "apps/run/report.h"
+#include "apps/run/run_outputs.h"
 #include "backend/base/atomic_file.h"
+#include "backend/base/stopwatch.h"
 
 namespace loopgrid {
 namespace {

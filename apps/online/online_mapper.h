@@ -5,11 +5,11 @@
 #include <deque>
 #include <functional>
 
-#include "apps/online/line_queue.h"
-#include "apps/online/online_update.h"
-#include "apps/report.h"
-#include "apps/run_options.h"
-#include "frontend/log/carmen_decoder.h"
+#include "apps/live/online_update.h"
+#include "apps/online/source/line_queue.h"
+#include "apps/run/report.h"
+#include "apps/settings/run_options.h"
+#include "frontend/log/carmen/carmen_decoder.h"
 #include "frontend/slam/slam.h"
 
 namespace loopgrid {

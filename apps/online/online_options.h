@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "apps/run_options.h"
+#include "apps/settings/run_options.h"
 
 namespace loopgrid {
 

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "apps/online/event_writer.h"
-#include "apps/online/journal.h"
 #include "apps/online/online_mapper.h"
-#include "apps/online/resume_filter.h"
-#include "apps/run_options.h"
+#include "apps/online/session/journal.h"
+#include "apps/online/session/resume_filter.h"
+#include "apps/settings/run_options.h"
 
 namespace loopgrid {
 

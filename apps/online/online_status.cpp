@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/peak_memory.h"
+#include "apps/output/peak_memory.h"
 
 namespace loopgrid {
 namespace {

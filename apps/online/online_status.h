@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
+#include "apps/live/online_update.h"
 #include "apps/online/latency_histogram.h"
-#include "apps/online/line_queue.h"
-#include "apps/online/line_source.h"
-#include "apps/online/online_update.h"
+#include "apps/online/source/line_queue.h"
+#include "apps/online/source/line_source.h"
 #include "frontend/log/log_reader.h"
 
 namespace loopgrid {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/online/published_files.h"
-#include "apps/view/map_tiles.h"
+#include "apps/live/map_tiles.h"
+#include "apps/live/published_files.h"
 
 namespace loopgrid {
 

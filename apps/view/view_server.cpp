@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/online/host_port.h"
+#include "apps/net/host_port.h"
 #include "apps/view/view_routes.h"
 #include "apps/view/view_state.h"
 #include "backend/base/error.h"

@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 
-#include "apps/online/online_update.h"
-#include "apps/online/published_files.h"
+#include "apps/live/live_map.h"
+#include "apps/live/online_update.h"
+#include "apps/live/published_files.h"
 #include "apps/view/http_service.h"
-#include "apps/view/live_map.h"
 #include "apps/view/view_options.h"
 
 namespace loopgrid {

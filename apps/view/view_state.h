@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/online/online_update.h"
-#include "apps/view/map_tiles.h"
+#include "apps/live/map_tiles.h"
+#include "apps/live/online_update.h"
 
 namespace loopgrid {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "frontend/evaluation/error_summary.h"
-#include "frontend/log/relations_file.h"
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/relations_file.h"
+#include "frontend/evaluation/tum_file.h"
 
 namespace loopgrid {
 

@@ -4,7 +4,7 @@
 
 #include "backend/geometry/se2.h"
 #include "frontend/evaluation/error_summary.h"
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/tum_file.h"
 
 namespace loopgrid {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/tum_file.h"
 
 namespace loopgrid {
 

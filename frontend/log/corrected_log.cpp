@@ -7,9 +7,9 @@
 
 #include "backend/base/atomic_file.h"
 #include "backend/base/line_reader.h"
-#include "frontend/log/carmen_format.h"
-#include "frontend/log/carmen_interpreter.h"
-#include "frontend/log/rawlog_reader.h"
+#include "frontend/log/carmen/carmen_format.h"
+#include "frontend/log/carmen/carmen_interpreter.h"
+#include "frontend/log/rawlog/rawlog_reader.h"
 
 namespace loopgrid {
 namespace {

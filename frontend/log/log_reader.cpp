@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "backend/base/error.h"
-#include "frontend/log/carmen_reader.h"
-#include "frontend/log/rawlog_reader.h"
+#include "frontend/log/carmen/carmen_reader.h"
+#include "frontend/log/rawlog/rawlog_reader.h"
 
 namespace loopgrid {
 

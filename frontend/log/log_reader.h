@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/log/observation.h"
+#include "frontend/log/observation/observation.h"
 
 namespace loopgrid {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "frontend/log/observation.h"
+#include "frontend/log/observation/observation.h"
 
 namespace loopgrid {
 

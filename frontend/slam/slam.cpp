@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "backend/base/error.h"
-#include "backend/normal_equations.h"
+#include "backend/base/stopwatch.h"
+#include "backend/solve/normal_equations.h"
+#include "frontend/closing/delayed_graph.h"
 #include "frontend/matching/sensor_model.h"
-#include "frontend/slam/delayed_graph.h"
-#include "frontend/slam/known_space.h"
-#include "frontend/slam/scan_trail.h"
-#include "frontend/slam/stopwatch.h"
-#include "frontend/slam/tracker.h"
+#include "frontend/tracking/known_space.h"
+#include "frontend/tracking/scan_trail.h"
+#include "frontend/tracking/tracker.h"
 
 namespace loopgrid {
 namespace {
@@ -86,7 +86,7 @@ class Slam::Impl {
   }
 
   void Finish() {
-    const Stopwatch stopwatch(&statistics_.times.finishing);
+    const ScopedTimer stopwatch(&statistics_.times.finishing);
     graph_.Finish();
   }
 
@@ -139,7 +139,7 @@ class Slam::Impl {
   }
 
   void Track(const SE2& motion, TrackedScan* result) {
-    const Stopwatch stopwatch(&statistics_.times.tracking);
+    const ScopedTimer stopwatch(&statistics_.times.tracking);
     const TrackedPose tracked = tracker_.Track(*scans_.back().points, motion);
     motion_since_reference_ = motion_since_reference_ * motion;
     travel_ += motion.translation().norm();
@@ -256,7 +256,7 @@ class Slam::Impl {
   }
 
   void SetTrackingMap() {
-    const Stopwatch stopwatch(&statistics_.times.tracking);
+    const ScopedTimer stopwatch(&statistics_.times.tracking);
     tracker_.SetMap(is_known_ ? Placed(known_nodes_) : Placed(tracked_), T_map_robot());
   }
 

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "backend/pose_graph.h"
-#include "frontend/log/observation.h"
+#include "backend/graph/pose_graph.h"
+#include "frontend/closing/closure_record.h"
+#include "frontend/log/observation/observation.h"
 #include "frontend/matching/point_scan.h"
-#include "frontend/slam/closure_record.h"
-#include "frontend/slam/scan_trail.h"
 #include "frontend/slam/slam_options.h"
+#include "frontend/tracking/scan_trail.h"
 
 namespace loopgrid {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/run_outputs.h"
+#include "apps/run/run_outputs.h"
 #include "tests/apps/program.h"
 #include "tests/support/temporary_directory.h"
 

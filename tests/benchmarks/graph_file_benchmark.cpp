@@ -13,7 +13,7 @@
 
 #include "backend/base/gzip.h"
 #include "backend/base/parse_number.h"
-#include "backend/graph_file.h"
+#include "backend/files/graph_file.h"
 #include "tests/support/manhattan_world.h"
 #include "tests/support/memory_file.h"
 

@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
-#include "backend/marginals.h"
-#include "backend/optimizer.h"
-#include "backend/selected_inverse.h"
+#include "backend/solve/marginals.h"
+#include "backend/solve/optimizer.h"
+#include "backend/sparse/selected_inverse.h"
 #include "tests/support/benchmark_graphs.h"
 #include "tests/support/cholmod_solver.h"
 

@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-#include "backend/initial_guess.h"
-#include "backend/optimizer.h"
+#include "backend/guess/initial_guess.h"
+#include "backend/solve/optimizer.h"
 #include "tests/support/benchmark_graphs.h"
 #include "tests/support/ceres_optimizer.h"
 #include "tests/support/peak_memory.h"

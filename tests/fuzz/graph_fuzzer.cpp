@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "backend/base/error.h"
-#include "backend/graph_file.h"
+#include "backend/files/graph_file.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "backend/base/error.h"
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/tum_file.h"
 #include "tests/support/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "backend/graph_file.h"
+#include "backend/files/graph_file.h"
 #include "tests/support/manhattan_world.h"
 
 namespace loopgrid::test_support {

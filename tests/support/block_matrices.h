@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <random>
 
-#include "backend/symmetric_block_matrix.h"
+#include "backend/sparse/symmetric_block_matrix.h"
 
 namespace loopgrid::test_support {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "backend/base/input_file.h"
+#include "frontend/evaluation/tum_file.h"
 #include "frontend/log/log_reader.h"
-#include "frontend/log/tum_file.h"
 #include "tests/support/memory_file.h"
 #include "tests/support/office_world.h"
 

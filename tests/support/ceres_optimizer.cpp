@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include "backend/constraint_error.h"
+#include "backend/graph/constraint_error.h"
 
 namespace loopgrid::test_support {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/pose_graph.h"
+#include "backend/graph/pose_graph.h"
 
 namespace loopgrid::test_support {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "backend/symmetric_block_matrix.h"
+#include "backend/sparse/symmetric_block_matrix.h"
 
 namespace loopgrid::test_support {
 

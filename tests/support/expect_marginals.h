@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "backend/marginals.h"
+#include "backend/solve/marginals.h"
 #include "tests/support/graphs.h"
 
 namespace loopgrid::test_support {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "backend/base/error.h"
-#include "backend/graph_file.h"
+#include "backend/files/graph_file.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid::test_support {

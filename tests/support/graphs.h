@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "backend/normal_equations.h"
-#include "backend/pose_graph.h"
+#include "backend/graph/pose_graph.h"
+#include "backend/solve/normal_equations.h"
 #include "tests/support/poses.h"
 
 namespace loopgrid::test_support {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "backend/pose_graph.h"
+#include "backend/graph/pose_graph.h"
 
 namespace loopgrid::test_support {
 

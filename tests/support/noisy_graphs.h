@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "backend/pose_graph.h"
+#include "backend/graph/pose_graph.h"
 #include "tests/support/poses.h"
 
 namespace loopgrid::test_support {

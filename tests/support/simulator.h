@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "frontend/log/observation.h"
+#include "frontend/log/observation/observation.h"
 #include "tests/support/portable_random.h"
 
 namespace loopgrid::test_support {

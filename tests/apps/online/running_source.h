@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "apps/online/line_queue.h"
-#include "apps/online/line_source.h"
+#include "apps/online/source/line_queue.h"
+#include "apps/online/source/line_source.h"
 #include "tests/apps/online/wait_until.h"
 
 namespace loopgrid::test_support {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/run_outputs.h"
+#include "apps/run/run_outputs.h"
 #include "tests/support/temporary_directory.h"
 
 namespace loopgrid::test_support {

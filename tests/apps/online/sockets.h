@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/online/descriptor.h"
+#include "apps/net/descriptor.h"
 
 namespace loopgrid::test_support {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "apps/online/online_update.h"
+#include "apps/live/online_update.h"
 #include "mapping/map_files.h"
 #include "tests/frontend/slam/walk.h"
 

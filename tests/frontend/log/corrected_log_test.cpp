@@ -10,7 +10,7 @@
 
 #include "backend/base/error.h"
 #include "backend/base/gzip.h"
-#include "frontend/log/carmen_line.h"
+#include "frontend/log/carmen/carmen_line.h"
 #include "tests/frontend/log/log_testing.h"
 #include "tests/support/temporary_directory.h"
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "frontend/log/relations_file.h"
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/relations_file.h"
+#include "frontend/evaluation/tum_file.h"
 #include "tests/frontend/log/log_testing.h"
 #include "tests/support/recordings.h"
 

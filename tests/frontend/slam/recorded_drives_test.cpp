@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/evaluation/trajectory_error.h"
-#include "frontend/log/tum_file.h"
+#include "frontend/evaluation/tum_file.h"
 #include "frontend/slam/slam.h"
 #include "tests/frontend/log/log_testing.h"
 #include "tests/support/recordings.h"

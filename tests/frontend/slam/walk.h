@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/slam/closure_graph.h"
-#include "frontend/slam/loop_closing.h"
-#include "frontend/slam/nodes.h"
+#include "frontend/closing/closure_graph.h"
+#include "frontend/closing/loop_closing.h"
+#include "frontend/closing/nodes.h"
 #include "tests/support/rooms.h"
 
 namespace loopgrid::test_support {

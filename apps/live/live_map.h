@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/live/map_tiles.h"
+#include "apps/live/online_update.h"
+#include "mapping/occupancy_grid.h"
+
+namespace loopgrid {
+
+struct LiveMapOptions {
+  OccupancyGridOptions grid;
+  double publish_interval = 0.1;  ///< the picture changes at most this often, seconds
+  double redraw_pause = 4.0;      ///< from the start of a redraw to the next, in times it took
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
+/// The map as it grows, on a thread of its own: draws each scan, and draws all anew when nodes have
+/// moved. Needs 4 bytes a cell of the grid (8 while it redraws), at most `grid.max_cells` of them,
+/// 1.4 a cell for the tiles, and some 100 bytes a scan beside its points, which it shares. All
+/// methods may be called from any thread.
+class LiveMap {
+ public:
+  /// Throws Error (kUsage) if the options are not valid.
+  explicit LiveMap(const LiveMapOptions& options = {});
+  ~LiveMap();
+  LiveMap(const LiveMap&) = delete;
+  LiveMap& operator=(const LiveMap&) = delete;
+
+  /// Takes the scan (if it has points) and the nodes (if they have moved). Returns at once.
+  void Add(const OnlineUpdate& update);
+
+  /// Waits until the picture shows all that was added before, moved nodes included.
+  void WaitUntilCurrent();
+
+  /// The whole map so far; for map.yaml see MapYaml(). Throws Error (kUsage) if it is too large for
+  /// an image, see BlankMap().
+  MapPicture Picture() const;
+  double resolution() const;  ///< side of a cell, metres
+
+  const MapTiles& tiles() const;
+
+  struct Counters {
+    std::int64_t scans = 0;     ///< taken from the queue
+    std::int64_t left_out = 0;  ///< of them, those that do not fit into `max_cells`
+    std::int64_t redraws = 0;
+    std::size_t waiting = 0;  ///< updates in the queue
+  };
+  Counters counters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,87 @@
+#include "apps/live/refresher.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "backend/base/atomic_file.h"
+#include "backend/files/graph_file.h"
+#include "mapping/map_files.h"
+
+namespace loopgrid {
+
+Refresher::Refresher(std::string folder, double interval, LiveMap* map, PublishedFiles* published)
+    : folder_(std::move(folder)),
+      interval_(interval),
+      map_(map),
+      published_(published),
+      thread_([this] { Serve(); }) {}
+
+Refresher::~Refresher() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+bool Refresher::IsDue() const {
+  const std::lock_guard lock(mutex_);
+  if (problem_) std::rethrow_exception(problem_);
+  return !content_ && Clock::now() >= next_;
+}
+
+void Refresher::Refresh(RefreshContent content) {
+  {
+    const std::lock_guard lock(mutex_);
+    content_ = std::move(content);
+  }
+  wake_.notify_all();
+}
+
+std::optional<std::int64_t> Refresher::TakeSaved() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(saved_, std::nullopt);
+}
+
+void Refresher::Serve() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [this] { return closing_ || content_; });
+    if (closing_) return;
+    lock.unlock();
+    const Clock::time_point start = Clock::now();
+    std::exception_ptr problem;
+    try {
+      Write(*content_);
+    } catch (...) {
+      problem = std::current_exception();
+    }
+    const Clock::time_point end = Clock::now();
+    lock.lock();
+    problem_ = problem;
+    if (!problem) saved_ = std::ssize(content_->trajectory);
+    content_.reset();
+    next_ = std::max(start + std::chrono::duration_cast<Clock::duration>(interval_),
+                     end + 10 * (end - start));
+  }
+}
+
+void Refresher::Write(const RefreshContent& content) const {
+  WriteOne("trajectory.tum", FormatTum(content.trajectory));
+  WriteOne("graph.g2o", FormatGraph(content.graph));
+  map_->WaitUntilCurrent();
+  const MapPicture map = map_->Picture();
+  WriteOne("map.png", EncodePng(map.image));
+  WriteOne("map.pgm", EncodePgm(map.image));
+  WriteOne("map.yaml", MapYaml(map.box, map_->resolution(), "map.pgm"));
+}
+
+void Refresher::WriteOne(const std::string& name, std::string content) const {
+  WriteFileAtomically(folder_ + "/" + name, content);
+  if (published_ == nullptr) return;
+  published_->Put(name, std::make_shared<const std::string>(std::move(content)));
+}
+
+}  // namespace loopgrid

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string_view>
+
+#include "apps/online/source/line_queue.h"
+#include "apps/online/source/line_splitter.h"
+
+namespace loopgrid {
+
+/// Where a source pours in what it reads: splits it into lines, stamps them with the time and
+/// pushes them. Closes the queue at the end of its life.
+class LineInlet {
+ public:
+  explicit LineInlet(LineQueue* queue) : queue_(queue) {}
+  ~LineInlet() { queue_->Close(); }
+  LineInlet(const LineInlet&) = delete;
+  LineInlet& operator=(const LineInlet&) = delete;
+
+  /// Takes bytes that have just arrived; waits while the queue is full. False once it is closed.
+  bool Add(std::string_view bytes);
+
+  /// The stream is over: pushes what is left of it, as a line that is not terminated. Bytes added
+  /// after that begin another one. False once the queue is closed.
+  bool Finish();
+
+  /// Whether the last Add() completed a line.
+  bool completed_line() const { return completed_line_; }
+
+ private:
+  LineQueue* queue_;
+  LineSplitter splitter_;
+  bool completed_line_ = false;
+};
+
+}  // namespace loopgrid

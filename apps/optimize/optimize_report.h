@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/optimize/optimize_options.h"
+#include "backend/files/graph_file.h"
+#include "backend/global/best_start.h"
+#include "backend/global/global_optimality.h"
+
+namespace loopgrid {
+
+/// Everything that an optimisation tells about itself, as plain values.
+struct OptimizeReport {
+  OptimizeOptions options;
+
+  int dimensions = 2;
+  std::size_t nodes = 0;
+  std::size_t landmarks = 0;
+  std::size_t sequential = 0;    ///< constraints that join a node to the next one by id
+  std::size_t closures = 0;      ///< all others
+  std::size_t observations = 0;  ///< of landmarks
+  std::size_t components = 0;
+  std::vector<std::int64_t> held;       ///< ids of the nodes that did not move
+  std::size_t fixed = 0;                ///< how many of these the file fixes
+  std::int64_t degrees_of_freedom = 0;  ///< what F is on average if the information is true
+  GraphNotes notes;
+
+  double file_error = 0.0;         ///< F at the poses in the file
+  std::vector<StartTrial> trials;  ///< see BestStartResult
+  std::size_t best = 0;
+  double final_chi2 = 0.0;  ///< TotalChi2 at the end
+  std::optional<OptimalityCertificate> certificate;
+  std::size_t robust = 0;    ///< constraints and observations that the loss applies to
+  std::size_t outliers = 0;  ///< of these, those whose error is beyond the loss's width at the end
+  std::vector<std::string> files;  ///< written
+
+  double reading_seconds = 0.0;
+  double optimizing_seconds = 0.0;  ///< all starts, with the test for global optimality
+  double marginals_seconds = 0.0;
+  double writing_seconds = 0.0;  ///< drawing included
+  double total_seconds = 0.0;
+  double peak_memory_mb = 0.0;
+
+  const OptimizerResult& result() const { return trials[best].result; }
+};
+
+/// Why there is no certificate, or what it says; one line.
+std::string ExplainOptimality(const OptimizeReport& report);
+
+/// For programs. All that may differ between two runs on the same input is under the key "timings".
+std::string FormatOptimizeJson(const OptimizeReport& report);
+
+/// For people; F with 12 digits, so that it can be compared with published optima.
+std::string FormatOptimizeSummary(const OptimizeReport& report);
+
+}  // namespace loopgrid

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frontend/closing/closure_record.h"
+
+namespace loopgrid {
+
+/// The audit trail of loop closing as CSV text: a header, then one line a closure tried, in order.
+/// Metres, radians, seconds; x, y, theta and the covariance are those of T_from_to.
+std::string FormatClosuresCsv(const std::vector<ClosureRecord>& closures);
+
+}  // namespace loopgrid

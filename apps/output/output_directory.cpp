@@ -1,0 +1,111 @@
+#include "apps/output/output_directory.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "backend/base/atomic_file.h"
+#include "backend/base/error.h"
+
+namespace loopgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Fail(const fs::path& path, const std::string& what) {
+  throw Error(ErrorCode::kOutput, fmt::format("{}: {}", path.string(), what));
+}
+
+[[noreturn]] void Fail(const fs::path& path, const std::error_code& error) {
+  Fail(path, error.message());
+}
+
+}  // namespace
+
+OutputDirectory::OutputDirectory(const std::string& directory, std::vector<std::string> names)
+    : directory_(directory), names_(std::move(names)) {}
+
+OutputDirectory::~OutputDirectory() { Discard(); }
+
+void OutputDirectory::Prepare() {
+  const std::lock_guard lock(mutex_);
+  CreateDirectories();
+  CheckPlaces();
+  std::string pattern = (directory_ / ".loopgrid-unfinished-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) {
+    Fail(directory_, std::error_code(errno, std::generic_category()));
+  }
+  staging_ = pattern;
+}
+
+void OutputDirectory::CreateDirectories() {
+  if (directory_.empty()) Fail("--out", "the name is empty");
+  fs::path path;
+  for (const fs::path& part : directory_) {
+    path /= part;
+    std::error_code error;
+    if (fs::is_directory(path, error)) continue;
+    if (fs::exists(path, error)) Fail(path, "is not a directory");
+    if (!fs::create_directory(path, error)) Fail(path, error);
+    created_.push_back(path);
+  }
+}
+
+void OutputDirectory::CheckPlaces() const {
+  for (const std::string& name : names_) {
+    std::error_code error;
+    if (fs::is_directory(directory_ / name, error)) {
+      Fail(directory_ / name, "is a directory, and a file of this name is to be written");
+    }
+  }
+}
+
+void OutputDirectory::Write(const std::string& name,
+                            const std::function<void(const std::string& path)>& write) {
+  const std::string path = (staging_ / name).string();
+  try {
+    write(path);
+  } catch (const Error& error) {
+    const std::string_view message = error.what();
+    if (!message.starts_with(path)) throw;
+    throw Error(error.code(), (directory_ / name).string().append(message.substr(path.size())));
+  }
+}
+
+void OutputDirectory::Write(const std::string& name, std::string_view content) {
+  Write(name, [content](const std::string& path) { WriteFileAtomically(path, content); });
+}
+
+void OutputDirectory::Commit() {
+  const std::lock_guard lock(mutex_);
+  for (const std::string& name : names_) {
+    if (!fs::is_regular_file(staging_ / name)) Fail(directory_ / name, "was not written");
+  }
+  for (const std::string& name : names_) {
+    std::error_code error;
+    fs::rename(staging_ / name, directory_ / name, error);
+    if (error) Fail(directory_ / name, error);
+  }
+  std::error_code ignored;
+  fs::remove(staging_, ignored);
+  done_ = true;
+}
+
+void OutputDirectory::Discard() noexcept {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(done_, true)) return;
+  std::error_code ignored;
+  // Somebody may be writing there just now: what a pass misses, the next one finds.
+  for (int pass = 0; pass < 10 && !staging_.empty() && fs::exists(staging_, ignored); ++pass) {
+    fs::remove_all(staging_, ignored);
+  }
+  // Removes empty folders only.
+  for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
+    fs::remove(*folder, ignored);
+  }
+}
+
+}  // namespace loopgrid

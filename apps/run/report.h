@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "apps/settings/run_options.h"
+#include "frontend/log/log_reader.h"
+#include "frontend/slam/slam.h"
+
+namespace loopgrid {
+
+/// Everything that a run tells about itself, as plain values.
+struct RunReport {
+  RunOptions options;
+  LogStatistics log;
+  SlamStatistics slam;
+  int nodes = 0;
+  int constraints = 0;
+  std::map<std::string, std::int64_t> closures;  ///< how many tried came to which outcome
+  int map_width = 0;                             ///< cells
+  int map_height = 0;                            ///< cells
+  double data_seconds = 0.0;                     ///< how long the recording took
+  double reading_seconds = 0.0;                  ///< of the log
+  double drawing_seconds = 0.0;                  ///< map and drawings
+  double writing_seconds = 0.0;                  ///< the other files
+  double total_seconds = 0.0;                    ///< wall time of the whole run
+  double peak_memory_mb = 0.0;
+};
+
+/// Seconds of recording behind a row of time stamps that may run backwards and jump: steps of over
+/// a minute are taken for a clock that was set, not for time that passed.
+class RecordingClock {
+ public:
+  void Add(double timestamp);
+  double seconds() const;
+
+ private:
+  bool started_ = false;
+  double last_ = 0.0;
+  double sum_ = 0.0;
+};
+
+/// report.json. All that may differ between two runs on the same input is under the key "timings".
+std::string FormatReportJson(const RunReport& report);
+
+/// The few lines for the terminal.
+std::string FormatSummary(const RunReport& report);
+
+}  // namespace loopgrid

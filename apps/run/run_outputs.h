@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/output/output_directory.h"
+#include "apps/run/report.h"
+#include "apps/settings/run_options.h"
+#include "frontend/evaluation/tum_file.h"
+#include "frontend/slam/slam.h"
+
+namespace loopgrid {
+
+/// The names of all files that a run leaves.
+std::vector<std::string> RunOutputNames();
+
+/// The poses of a run's scans with their times.
+Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses);
+
+/// Writes the files, all but report.json, and notes in `report` what there is to tell about them.
+/// Throws Error.
+void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
+                     RunReport* report);
+
+}  // namespace loopgrid

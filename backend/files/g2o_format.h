@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "backend/files/graph_tag.h"
+
+namespace loopgrid {
+
+/// The lines that g2o (Kuemmerle et al. 2011) writes for a graph of poses:
+///
+///     VERTEX_SE2 id x y theta                   EDGE_SE2 from to x y theta I
+///     VERTEX_XY id x y                          EDGE_SE2_XY node landmark x y I
+///     VERTEX_SE3:QUAT id x y z qx qy qz qw      EDGE_SE3:QUAT from to x y z qx qy qz qw I
+///     VERTEX_TRACKXYZ id x y z                  EDGE_SE3_TRACKXYZ node landmark sensor x y z I
+///     PARAMS_SE3OFFSET sensor x y z qx qy qz qw
+///
+/// I is the upper triangle of the information matrix, row by row, in the order of Pose::Tangent.
+/// What a sensor has seen is taken into the node's frame; it is written as seen from there.
+template <typename Pose>
+std::span<const GraphTag<Pose>> G2oTags();
+
+template <typename Pose>
+std::string FormatG2o(const PoseGraph<Pose>& graph, const GraphIds& ids);
+
+}  // namespace loopgrid

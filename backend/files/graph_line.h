@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "backend/base/error.h"
+#include "backend/base/line_reader.h"
+#include "backend/base/parse_number.h"
+#include "backend/files/graph_file.h"
+
+namespace loopgrid {
+
+/// A line of a graph file, field after field. What is wrong with it is an Error (kInput) that
+/// begins `file:line: `.
+class GraphLine {
+ public:
+  GraphLine(const LineReader& lines, std::string_view text, GraphNotes* notes)
+      : lines_(lines), fields_(text), notes_(notes), tag_(fields_.Next()) {}
+
+  std::string_view tag() const { return tag_; }
+  std::int64_t number() const { return lines_.line_number(); }
+
+  /// The fields that follow the tag, as messages show them: "id x y theta".
+  void Expect(const char* fields) { expected_ = fields; }
+
+  std::int64_t Id();
+
+  template <int kCount>
+  Eigen::Matrix<double, kCount, 1> Numbers() {
+    Eigen::Matrix<double, kCount, 1> numbers;
+    for (double& number : numbers) number = Number();
+    return numbers;
+  }
+
+  /// A symmetric matrix from its upper triangle, row by row.
+  template <int kSize>
+  Eigen::Matrix<double, kSize, kSize> UpperTriangle() {
+    Eigen::Matrix<double, kSize, kSize> matrix;
+    for (int row = 0; row < kSize; ++row) {
+      for (int column = row; column < kSize; ++column) {
+        matrix(row, column) = matrix(column, row) = Number();
+      }
+    }
+    return matrix;
+  }
+
+  bool AtEnd() { return fields_.AtEnd(); }
+  /// Refuses what follows the last field.
+  void End();
+
+  /// Refuses a symmetric matrix that is not positive semi-definite, up to rounding in the file.
+  template <int kSize>
+  void RequireInformation(const Eigen::Matrix<double, kSize, kSize>& matrix) const;
+
+  GraphNotes* notes() const { return notes_; }
+  /// Counts the line, and says why if it is among the first.
+  void Note(GraphNotes::Kind* kind, const std::string& message) const;
+
+  Error ErrorHere(const std::string& problem) const { return lines_.ErrorHere(problem); }
+
+ private:
+  double Number() {
+    FieldCursor field = fields_;
+    double number = 0.0;
+    if (!fields_.NextDecimal(&number)) throw BadField(field.Next());
+    return number;
+  }
+  Error BadField(std::string_view field) const;
+
+  const LineReader& lines_;
+  FieldCursor fields_;
+  GraphNotes* notes_;
+  std::string_view tag_;
+  const char* expected_ = "";
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "backend/graph/pose_graph.h"
+#include "backend/graph/robust_loss.h"
+#include "backend/solve/normal_equations.h"
+#include "backend/sparse/sparse_cholesky.h"
+
+namespace loopgrid {
+
+/// Marginal covariances of the nodes and landmarks of a graph: blocks of the inverse Hessian, those
+/// of nodes in each node's own frame, in the order of Pose::Tangent, those of landmarks in the map
+/// frame. Refers to the factor that it is made from.
+template <typename Pose>
+class Marginals {
+ public:
+  static constexpr int kDof = Pose::kDof;
+  static constexpr int kPoint = Pose::Point::RowsAtCompileTime;
+  using Covariance = Eigen::Matrix<double, kDof, kDof>;
+  using PointCovariance = Eigen::Matrix<double, kPoint, kPoint>;
+
+  /// `factor` is that of the equations' undamped Hessian, linearised where the graph is.
+  Marginals(const PoseGraph<Pose>& graph, const NormalEquations<Pose>& equations,
+            const SparseCholesky<kDof>& factor);
+
+  /// Of every node relative to the held node of its component; zero for held nodes.
+  const std::vector<Covariance>& covariances() const { return covariances_; }
+
+  /// Of every landmark, likewise; zero for those that no node has seen.
+  const std::vector<PointCovariance>& landmark_covariances() const { return landmark_covariances_; }
+
+  /// Covariance of every node (rows) with one node (columns): one solve with kDof columns.
+  std::vector<Covariance> CrossCovariances(int node) const;
+
+  /// Covariance of the first node (rows) with the second (columns) for each pair, in their order:
+  /// one solve for each different second node.
+  std::vector<Covariance> PairCovariances(std::span<const std::pair<int, int>> pairs) const;
+
+  /// Of every node relative to `node`: the diagonal blocks of the inverse of H without the rows and
+  /// columns of `node` (H_red in Section IV-F of the tutorial); zero for `node` itself. Infinite
+  /// on the diagonal for nodes of other components. They come from the joint covariance with the
+  /// held node, which is no approximation: the errors do not change when all nodes move together,
+  /// so H has these motions in its null space, and changing the node that is held is linear. Only
+  /// with several fixed nodes in a component do they differ: those are then known exactly.
+  std::vector<Covariance> RelativeTo(int node) const;
+
+  /// Of every landmark relative to `node`, in the map frame. Infinite on the diagonal where no node
+  /// of the same component has seen it.
+  std::vector<PointCovariance> LandmarksRelativeTo(int node) const;
+
+ private:
+  /// The columns of the inverse that belong to a node; empty if it is held.
+  Eigen::MatrixXd ColumnsOf(int node) const;
+
+  std::vector<Pose> poses_;
+  std::vector<typename Pose::Point> landmarks_;
+  const NormalEquations<Pose>* equations_;
+  const SparseCholesky<kDof>* factor_;
+  std::vector<Covariance> covariances_;
+  std::vector<PointCovariance> landmark_covariances_;
+};
+
+/// Marginals::RelativeTo for a graph of which nothing else is wanted. Nothing if the Hessian is not
+/// positive definite; throws Error (kInput) if the graph is not valid or has no such
+/// node.
+template <typename Pose>
+std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovariances(
+    const PoseGraph<Pose>& graph, int node, const RobustLoss& loss = {});
+
+/// Carries covariances relative to the last node but one (as of Marginals::RelativeTo) over to the
+/// last node, which only `link` joins to the graph, from the node before it: what a new
+/// factorisation would give, without one. `covariances` has an entry a node but the last; it gets
+/// that one too.
+template <typename Pose>
+void ExtendRelativeCovariances(const PoseGraph<Pose>& graph, const Constraint<Pose>& link,
+                               std::vector<typename Marginals<Pose>::Covariance>* covariances);
+
+extern template class Marginals<SE2>;
+extern template class Marginals<SE3>;
+
+}  // namespace loopgrid

@@ -1,0 +1,69 @@
+#include "backend/sparse/ordering.h"
+
+#include <amd.h>
+#include <metis.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <vector>
+
+namespace loopgrid {
+namespace {
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// The neighbours of each node, in one array: those of node i in [start[i], start[i + 1]).
+struct Neighbours {
+  std::vector<int> start;
+  std::vector<int> nodes;
+};
+
+Neighbours ListNeighbours(int n, std::span<const BlockPlace> places) {
+  Neighbours lists;
+  lists.start.assign(Index(n) + 1, 0);
+  for (const BlockPlace& place : places) {
+    ++lists.start[Index(place.row) + 1];
+    ++lists.start[Index(place.col) + 1];
+  }
+  std::partial_sum(lists.start.begin(), lists.start.end(), lists.start.begin());
+  lists.nodes.resize(2 * places.size());
+  std::vector<int> next(lists.start.begin(), lists.start.end() - 1);
+  for (const BlockPlace& place : places) {
+    lists.nodes[Index(next[Index(place.row)]++)] = place.col;
+    lists.nodes[Index(next[Index(place.col)]++)] = place.row;
+  }
+  return lists;
+}
+
+}  // namespace
+
+std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
+  std::vector<int> order(Index(n));
+  std::iota(order.begin(), order.end(), 0);
+  if (places.empty()) return order;  // AMD and METIS take no graph without edges
+  const Neighbours lists = ListNeighbours(n, places);
+  const int status =
+      amd_order(n, lists.start.data(), lists.nodes.data(), order.data(), nullptr, nullptr);
+  if (status == AMD_OUT_OF_MEMORY) throw std::bad_alloc();
+  return order;
+}
+
+std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places) {
+  static_assert(sizeof(idx_t) == sizeof(int));
+  std::vector<int> order(Index(n));
+  std::iota(order.begin(), order.end(), 0);
+  if (places.empty()) return order;
+  Neighbours lists = ListNeighbours(n, places);
+  std::vector<int> position(Index(n));
+  static std::mutex mutex;  // of rand()
+  const std::lock_guard lock(mutex);
+  const int status = METIS_NodeND(&n, lists.start.data(), lists.nodes.data(), nullptr, nullptr,
+                                  order.data(), position.data());
+  if (status != METIS_OK) throw std::bad_alloc();
+  return order;
+}
+
+}  // namespace loopgrid

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backend/sparse/symmetric_block_matrix.h"
+
+namespace loopgrid {
+
+/// Orders of elimination that keep the factor of a sparse symmetric n x n matrix sparse, given the
+/// places of its entries above the diagonal: order[k] is the column that is eliminated k-th.
+
+/// Approximate minimum degree (Amestoy, Davis and Duff 1996): fast, and good for graphs that are
+/// nearly chains.
+std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places);
+
+/// Nested dissection (George 1973) by METIS's multilevel partitioning (Karypis and Kumar 1998): ten
+/// times slower, but better for large graphs that fill an area. METIS draws on the C library's
+/// rand(); the result is reproducible as long as nobody else does at the same time.
+std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places);
+
+}  // namespace loopgrid

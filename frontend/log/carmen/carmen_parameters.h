@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "backend/geometry/se2.h"
+#include "frontend/log/carmen/carmen_line.h"
+
+namespace loopgrid {
+
+/// What the PARAM lines of a CARMEN log say about one laser.
+struct CarmenLaserParameters {
+  double x = 0.0;           ///< robot_frontlaser_offset, metres ahead of the robot's centre
+  double y = 0.0;           ///< robot_frontlaser_side_offset, metres to the left of it
+  double theta = 0.0;       ///< robot_frontlaser_angular_offset, radians
+  double resolution = 0.0;  ///< laser_front_laser_resolution, degrees; 0: not given
+  double max_range = 0.0;   ///< robot_front_laser_max, metres; 0: not given
+
+  bool has_mount = false;  ///< a line put the laser elsewhere than at the robot's centre
+
+  SE2 T_robot_laser() const { return SE2(x, y, theta); }
+};
+
+/// Whether a message is of the front laser: FLASER, ROBOTLASER1, RAWLASER1.
+bool IsFrontLaser(CarmenTag tag);
+
+/// Whether a message is of the rear laser: RLASER, ROBOTLASER2, RAWLASER2.
+bool IsRearLaser(CarmenTag tag);
+
+/// The parameters of a CARMEN log as far as they concern its lasers. They hold from their line on.
+class CarmenParameters {
+ public:
+  CarmenParameters();
+
+  /// Takes a PARAM line. `known` tells whether it is about a laser. Returns what is wrong with it,
+  /// or an empty string.
+  std::string Apply(std::string_view line, bool* known);
+
+  /// Of the front laser, of the rear one, which looks backwards unless told otherwise, or of the
+  /// others, of which no parameters are known.
+  const CarmenLaserParameters& Of(CarmenTag tag) const;
+
+ private:
+  std::array<CarmenLaserParameters, 3> lasers_;  // front, rear, others
+};
+
+/// Direction of the first beam in the laser frame and the step to the next, radians.
+struct BeamAngles {
+  double first = 0.0;
+  double step = 0.0;
+};
+
+/// The fan that scanners with so many readings have: 180 and 181 readings step by 1 degree from
+/// -90, 360 and 361 by half a degree, and so on; counts that only wider scanners have get their
+/// field of view. An even count lacks the last beam of a symmetric fan: 180 readings end at +89.
+BeamAngles UsualBeamAngles(std::size_t count);
+
+/// The directions of a message's beams. ROBOTLASER and RAWLASER state them. For FLASER and RLASER
+/// the resolution comes from PARAM if given there, and the fan is as in UsualBeamAngles().
+BeamAngles BeamAnglesOf(const CarmenLaserMessage& message, const CarmenLaserParameters& parameters);
+
+}  // namespace loopgrid

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "backend/base/line_reader.h"
+#include "frontend/log/carmen/carmen_decoder.h"
+#include "frontend/log/log_reader.h"
+
+namespace loopgrid {
+
+/// Reads CARMEN text logs as CarmenDecoder understands them. A file that breaks off or whose gzip
+/// data do gives all that comes before.
+class CarmenReader : public LogReader {
+ public:
+  CarmenReader(LineReader lines, const LogReaderOptions& options);
+
+  bool Next(Observation* observation) override;
+  const LogStatistics& statistics() const override { return decoder_.statistics(); }
+  double progress() const override { return lines_.progress(); }
+
+ private:
+  bool ReadLine();
+
+  LineReader lines_;
+  CarmenDecoder decoder_;
+};
+
+}  // namespace loopgrid

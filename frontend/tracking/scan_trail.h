@@ -1,0 +1,63 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "backend/graph/pose_graph.h"
+#include "frontend/matching/point_scan.h"
+
+namespace loopgrid {
+
+/// Where a scan is in the graph.
+struct ScanPlace {
+  int node = 0;  ///< the node it belongs to
+  SE2 T_node_robot;
+};
+
+/// A scan as it is kept.
+struct ScanEntry {
+  double timestamp = 0.0;                   ///< seconds
+  SE2 T_odom_robot;                         ///< as in the log
+  SE2 T_robot_laser;                        ///< where the laser sits
+  ScanPlace place;                          ///< in the graph
+  std::shared_ptr<const PointScan> points;  ///< null if the map does not need them
+};
+
+/// All scans of a run with their places, and which of them are nodes.
+class ScanTrail {
+ public:
+  int size() const { return static_cast<int>(scans_.size()); }
+  const ScanEntry& operator[](int scan) const { return scans_[static_cast<std::size_t>(scan)]; }
+  const ScanEntry& back() const { return scans_.back(); }
+  ScanEntry& back() { return scans_.back(); }
+  const std::vector<int>& node_scans() const { return node_scans_; }
+
+  void Add(ScanEntry scan) { scans_.push_back(std::move(scan)); }
+
+  /// Makes a node of the latest scan. The scans from `first_scan` on that belong to `parent` are on
+  /// the way from there, which tracking saw as `T_parent_node`.
+  void AddNode(int parent, const SE2& T_parent_node, int first_scan);
+
+  const PointScan* NodePoints(int node) const {
+    return (*this)[node_scans_[static_cast<std::size_t>(node)]].points.get();
+  }
+
+  /// Pose of a scan: beside its node, shifted in proportion to its share of the way by what `graph`
+  /// has changed between this node and the next.
+  SE2 Pose(int scan, const PoseGraph<SE2>& graph) const;
+
+ private:
+  // How a node was reached.
+  struct Way {
+    int parent = -1;
+    SE2 T_parent_node;
+    int first_scan = 0;
+  };
+
+  std::deque<ScanEntry> scans_;
+  std::vector<int> node_scans_;
+  std::vector<Way> ways_;  // to each node
+};
+
+}  // namespace loopgrid

@@ -1,0 +1,439 @@
+#include "backend/solve/optimizer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <string>
+
+#include "backend/base/error.h"
+#include "backend/graph/constraint_error.h"
+#include "tests/support/graphs.h"
+#include "tests/support/sphere_world.h"
+
+namespace loopgrid {
+namespace {
+
+using test_support::AppendNextNode;
+using test_support::Distance;
+using test_support::RandomGraph;
+using test_support::RandomPose;
+
+template <typename Pose>
+void ExpectSamePlaces(const PoseGraph<Pose>& a, const PoseGraph<Pose>& b, double tolerance) {
+  ASSERT_EQ(a.poses.size(), b.poses.size());
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    EXPECT_LE(Distance(a.poses[i], b.poses[i]), tolerance) << "node " << i;
+  }
+  ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
+  for (std::size_t i = 0; i < a.landmarks.size(); ++i) {
+    EXPECT_LE((a.landmarks[i] - b.landmarks[i]).norm(), tolerance) << "landmark " << i;
+  }
+}
+
+/// Newton steps with a dense solver until nothing moves.
+template <typename Pose>
+void OptimizeDense(PoseGraph<Pose>* graph) {
+  constexpr int kDof = Pose::kDof;
+  constexpr int kPoint = Pose::Point::RowsAtCompileTime;
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const auto [H, b] = test_support::DenseNormalEquations(*graph);
+    const std::vector<int> held = HeldNodes(*graph, ConnectedComponents(*graph));
+    const Eigen::VectorXd dx = -test_support::InverseWithout(H, held, kDof) * b;
+    Eigen::Index row = 0;
+    for (Pose& pose : graph->poses) {
+      pose = pose.Boxplus(dx.segment<kDof>(row));
+      row += kDof;
+    }
+    for (auto& landmark : graph->landmarks) {
+      landmark += dx.segment<kPoint>(row);
+      row += kPoint;
+    }
+    if (dx.norm() < 1e-11) return;
+  }
+  FAIL() << "the reference does not converge";
+}
+
+/// Poses that have nothing to do with the constraints.
+template <typename Pose>
+PoseGraph<Pose> NonsenseStart(unsigned seed) {
+  PoseGraph<Pose> graph = RandomGraph<Pose>(25, 25, seed, 5);
+  std::mt19937 random(seed);
+  for (Pose& pose : graph.poses) pose = RandomPose<Pose>(&random, 30.0);
+  return graph;
+}
+
+template <typename P, Method kM>
+struct Solver {
+  using Pose = P;
+  static constexpr Method kMethod = kM;
+};
+
+struct SolverName {
+  template <typename S>
+  static std::string GetName(int) {
+    const std::string pose = test_support::PoseName::GetName<typename S::Pose>(0);
+    if (S::kMethod == Method::kGaussNewton) return pose + "_GaussNewton";
+    return pose + (S::kMethod == Method::kDogLeg ? "_DogLeg" : "_LevenbergMarquardt");
+  }
+};
+
+using AllSolvers =
+    ::testing::Types<Solver<SE2, Method::kLevenbergMarquardt>, Solver<SE2, Method::kGaussNewton>,
+                     Solver<SE2, Method::kDogLeg>, Solver<SE3, Method::kLevenbergMarquardt>,
+                     Solver<SE3, Method::kGaussNewton>, Solver<SE3, Method::kDogLeg>>;
+
+template <typename S>
+class OptimizerTest : public ::testing::Test {
+ protected:
+  OptimizerTest() { options_.method = S::kMethod; }
+
+  OptimizerResult Optimize(PoseGraph<typename S::Pose>* graph) const {
+    return Optimizer<typename S::Pose>(options_).Optimize(graph);
+  }
+
+  OptimizerOptions options_;
+};
+
+TYPED_TEST_SUITE(OptimizerTest, AllSolvers, SolverName);
+
+TYPED_TEST(OptimizerTest, FindsTheMinimumThatDenseNewtonFinds) {
+  using Pose = typename TypeParam::Pose;
+  for (unsigned seed = 71; seed < 75; ++seed) {
+    SCOPED_TRACE(seed);
+    PoseGraph<Pose> graph = RandomGraph<Pose>(20, 20, seed, 8);
+    PoseGraph<Pose> expected = graph;
+    OptimizeDense(&expected);
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_EQ(result.termination, Termination::kConverged);
+    EXPECT_NEAR(result.final_error, TotalChi2(expected), 1e-7 * result.final_error);
+    EXPECT_NEAR(result.final_error, TotalChi2(graph), 1e-12 * result.final_error);
+    ExpectSamePlaces(graph, expected, 1e-3);
+  }
+}
+
+TYPED_TEST(OptimizerTest, OptimizesEachComponentOnItsOwn) {
+  using Pose = typename TypeParam::Pose;
+  PoseGraph<Pose> first = RandomGraph<Pose>(20, 15, 82, 4);
+  PoseGraph<Pose> second = RandomGraph<Pose>(15, 10, 83, 3);
+  PoseGraph<Pose> both = test_support::Union(first, second);
+  both.poses.emplace_back();                // no constraint at all
+  both.landmarks.emplace_back().setOnes();  // never seen
+  const OptimizerResult result = this->Optimize(&both);
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  this->Optimize(&first);
+  this->Optimize(&second);
+  EXPECT_NEAR(result.final_error, TotalChi2(first) + TotalChi2(second), 1e-6);
+  PoseGraph<Pose> expected = test_support::Union(first, second);
+  expected.poses.emplace_back();
+  expected.landmarks.emplace_back().setOnes();
+  ExpectSamePlaces(both, expected, 1e-3);
+}
+
+TYPED_TEST(OptimizerTest, TwoEqualConstraintsWeighAsOneOfTwiceTheInformation) {
+  using Pose = typename TypeParam::Pose;
+  PoseGraph<Pose> doubled = RandomGraph<Pose>(15, 10, 84, 3);
+  PoseGraph<Pose> heavier = doubled;
+  doubled.constraints.push_back(doubled.constraints[18]);
+  doubled.observations.push_back(doubled.observations[1]);
+  heavier.constraints[18].information *= 2.0;
+  heavier.observations[1].information *= 2.0;
+  this->Optimize(&doubled);
+  this->Optimize(&heavier);
+  ExpectSamePlaces(doubled, heavier, 1e-6);
+}
+
+TYPED_TEST(OptimizerTest, EveryParametrizationEndsAtTheSameMinimumFromAGoodStart) {
+  using Pose = typename TypeParam::Pose;
+  const PoseGraph<Pose> start = RandomGraph<Pose>(20, 15, 85, 5);
+  PoseGraph<Pose> expected = start;
+  this->Optimize(&expected);
+  for (const auto parametrization : {Parametrization::kExponential, Parametrization::kEuler}) {
+    this->options_.parametrization = parametrization;
+    PoseGraph<Pose> graph = start;
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_EQ(result.termination, Termination::kConverged);
+    // The errors of Euler angles are not quite the same.
+    const bool is_same = parametrization == Parametrization::kExponential || Pose::kDof == 3;
+    EXPECT_NEAR(TotalChi2(graph), TotalChi2(expected),
+                (is_same ? 1e-7 : 0.05) * result.final_error);
+    ExpectSamePlaces(graph, expected, is_same ? 1e-3 : 0.1);
+  }
+}
+
+TYPED_TEST(OptimizerTest, EndsWhereTheRobustGradientIsZero) {
+  using Pose = typename TypeParam::Pose;
+  PoseGraph<Pose> start = RandomGraph<Pose>(20, 20, 86, 5);
+  this->Optimize(&start);
+  std::mt19937 random(86);
+  for (std::size_t k = 19; k < start.constraints.size(); ++k) start.constraints[k].robust = true;
+  start.constraints[25].T_from_to = RandomPose<Pose>(&random, 10.0);  // wrong
+  for (const LossKind kind :
+       {LossKind::kHuber, LossKind::kCauchy, LossKind::kGemanMcClure, LossKind::kDcs}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    this->options_.loss = {kind, 2.0};
+    PoseGraph<Pose> graph = start;
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_EQ(result.termination, Termination::kConverged);
+    const Objective objective{this->options_.loss};
+    EXPECT_NEAR(result.final_error, TotalError(graph, objective), 1e-12 * result.final_error);
+    const auto [H, b] = test_support::DenseNormalEquations(graph, objective);
+    const Eigen::VectorXd newton = test_support::InverseWithout(H, {0}, Pose::kDof) * b;
+    EXPECT_LE(b.tail(b.size() - Pose::kDof).dot(newton.tail(b.size() - Pose::kDof)),
+              1e-7 * result.final_error);
+  }
+}
+
+TYPED_TEST(OptimizerTest, NeverEndsHigherThanItStarted) {
+  using Pose = typename TypeParam::Pose;
+  for (unsigned seed = 100; seed < 115; ++seed) {
+    SCOPED_TRACE(seed);
+    PoseGraph<Pose> graph = NonsenseStart<Pose>(seed);
+    const double before = TotalChi2(graph);
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_NEAR(result.initial_error, before, 1e-12 * before);
+    EXPECT_LE(result.final_error, result.initial_error);
+    EXPECT_NEAR(result.final_error, TotalChi2(graph), 1e-12 * result.final_error);
+  }
+}
+
+TYPED_TEST(OptimizerTest, TakesNoMoreStepsThanAllowed) {
+  using Pose = typename TypeParam::Pose;
+  for (int most = 0; most <= 6; ++most) {
+    for (unsigned seed = 120; seed < 126; ++seed) {
+      PoseGraph<Pose> graph = NonsenseStart<Pose>(seed);
+      const PoseGraph<Pose> before = graph;
+      this->options_.max_iterations = most;
+      const OptimizerResult result = this->Optimize(&graph);
+      EXPECT_LE(result.iterations, most) << "seed " << seed;
+      if (most > 0) continue;
+      EXPECT_EQ(result.termination, Termination::kMaxIterations);
+      EXPECT_EQ(graph, before);
+    }
+  }
+}
+
+TYPED_TEST(OptimizerTest, TheTraceTellsOfTheStartAndOfEveryStep) {
+  using Pose = typename TypeParam::Pose;
+  this->options_.trace = true;
+  PoseGraph<Pose> graph = RandomGraph<Pose>(20, 20, 87, 5);
+  const OptimizerResult result = this->Optimize(&graph);
+  ASSERT_EQ(static_cast<int>(result.trace.size()), result.iterations + 1);
+  EXPECT_EQ(result.trace.front().error, result.initial_error);
+  EXPECT_EQ(result.trace.back().error, result.final_error);
+  EXPECT_EQ(result.trace.front().step, 0.0);
+  double last = 0.0;
+  for (const IterationRecord& record : result.trace) {
+    EXPECT_NEAR(record.chi2, record.error, 1e-12 * record.error);  // no loss, no Euler angles
+    EXPECT_GE(record.seconds, last);
+    EXPECT_TRUE(record.step > 0.0 || last == 0.0);
+    last = record.seconds;
+  }
+  this->options_.trace = false;
+  EXPECT_TRUE(this->Optimize(&graph).trace.empty());
+}
+
+TYPED_TEST(OptimizerTest, HasTheSameBitsForAnyNumberOfThreads) {
+  using Pose = typename TypeParam::Pose;
+  const PoseGraph<Pose> start = RandomGraph<Pose>(2200, 20, 88, 20);
+  this->options_.max_iterations = 2;
+  PoseGraph<Pose> expected = start;
+  this->Optimize(&expected);
+  this->options_.threads = 3;
+  PoseGraph<Pose> graph = start;
+  this->Optimize(&graph);
+  EXPECT_EQ(graph, expected);
+}
+
+TYPED_TEST(OptimizerTest, LeavesGraphsWithoutAnythingToMoveAlone) {
+  using Pose = typename TypeParam::Pose;
+  PoseGraph<Pose> empty;
+  EXPECT_EQ(this->Optimize(&empty).termination, Termination::kNothingToMove);
+  PoseGraph<Pose> scattered;  // nodes without constraints are components of their own
+  std::mt19937 random(1);
+  for (int i = 0; i < 2; ++i) scattered.poses.push_back(RandomPose<Pose>(&random));
+  scattered.landmarks.emplace_back().setOnes();
+  const PoseGraph<Pose> before = scattered;
+  const OptimizerResult result = this->Optimize(&scattered);
+  EXPECT_EQ(result.termination, Termination::kNothingToMove);
+  EXPECT_EQ(result.final_error, 0.0);
+  EXPECT_EQ(scattered, before);
+  PoseGraph<Pose> fixed = RandomGraph<Pose>(3, 0, 81);
+  fixed.fixed = {0, 1, 2};
+  EXPECT_EQ(this->Optimize(&fixed).termination, Termination::kNothingToMove);
+}
+
+template <typename Pose>
+class AnyPoseOptimizerTest : public ::testing::Test {};
+
+TYPED_TEST_SUITE(AnyPoseOptimizerTest, test_support::AllPoses, test_support::PoseName);
+
+TYPED_TEST(AnyPoseOptimizerTest, HoldsTheFirstNodeOrTheFixedOnes) {
+  PoseGraph<TypeParam> graph = RandomGraph<TypeParam>(20, 10, 76, 4);
+  const PoseGraph<TypeParam> before = graph;
+  Optimizer<TypeParam>().Optimize(&graph);
+  EXPECT_EQ(graph.poses[0], before.poses[0]);
+  graph = before;
+  graph.fixed = {7, 13};
+  Optimizer<TypeParam>().Optimize(&graph);
+  EXPECT_EQ(graph.poses[7], before.poses[7]);
+  EXPECT_EQ(graph.poses[13], before.poses[13]);
+  EXPECT_NE(graph.poses[0], before.poses[0]);
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, GrowingGraphEndsWhereTheWholeOneEnds) {
+  PoseGraph<TypeParam> whole = RandomGraph<TypeParam>(60, 40, 78, 10);
+  PoseGraph<TypeParam> graph;
+  Optimizer<TypeParam> optimizer;
+  while (graph.poses.size() < whole.poses.size()) {
+    AppendNextNode(whole, &graph);
+    const std::size_t node = graph.poses.size() - 1;
+    if (node > 0) {
+      graph.poses[node] = graph.poses[node - 1] * whole.constraints[node - 1].T_from_to;
+    }
+    const OptimizerResult result = optimizer.Optimize(&graph);
+    EXPECT_TRUE(node == 0 || result.termination == Termination::kConverged) << node;
+  }
+  Optimizer<TypeParam>().Optimize(&whole);
+  EXPECT_NEAR(TotalChi2(graph), TotalChi2(whole), 1e-6 * TotalChi2(whole));
+  ExpectSamePlaces(graph, whole, 1e-2);
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, TheDogLegNeverGoesUphill) {
+  OptimizerOptions options;
+  options.method = Method::kDogLeg;
+  options.trace = true;
+  for (unsigned seed = 130; seed < 145; ++seed) {
+    PoseGraph<TypeParam> graph = NonsenseStart<TypeParam>(seed);
+    const OptimizerResult result = Optimizer<TypeParam>(options).Optimize(&graph);
+    EXPECT_EQ(result.uphill_steps, 0);
+    for (std::size_t i = 1; i < result.trace.size(); ++i) {
+      EXPECT_LT(result.trace[i].error, result.trace[i - 1].error) << "seed " << seed;
+    }
+  }
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, GaussNewtonSaysThatItWentUphillAndReturnsToTheBestPoint) {
+  OptimizerOptions options;
+  options.method = Method::kGaussNewton;
+  options.trace = true;
+  options.max_iterations = 15;
+  int diverged = 0;
+  for (unsigned seed = 150; seed < 170; ++seed) {
+    SCOPED_TRACE(seed);
+    PoseGraph<TypeParam> graph = NonsenseStart<TypeParam>(seed);
+    const OptimizerResult result = Optimizer<TypeParam>(options).Optimize(&graph);
+    int uphill = 0;
+    double lowest = result.initial_error;
+    for (std::size_t i = 1; i < result.trace.size(); ++i) {
+      if (result.trace[i].error > result.trace[i - 1].error) ++uphill;
+      lowest = std::min(lowest, result.trace[i].error);
+    }
+    EXPECT_EQ(result.uphill_steps, uphill);
+    EXPECT_NEAR(TotalChi2(graph), result.final_error, 1e-12 * result.final_error);
+    if (result.termination != Termination::kDiverged) continue;
+    ++diverged;
+    EXPECT_GT(uphill, 0);
+    EXPECT_EQ(result.final_error, lowest);
+  }
+  EXPECT_GT(diverged, 0);
+}
+
+TEST(Optimizer, DoesNotGoToAndFroWhereStepsOvershoot) {
+  PoseGraph<SE2> graph = RandomGraph<SE2>(12, 10, 1, 6);
+  Optimizer<SE2>().Optimize(&graph);
+  graph.constraints[13].T_from_to = SE2();  // grossly wrong: the optimum is far from any fit
+  const OptimizerResult result = Optimizer<SE2>().Optimize(&graph);
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_LE(result.iterations, 40);
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, DampsWhereTheConstraintsLeaveADirectionFree) {
+  using Pose = TypeParam;
+  using Tangent = typename Pose::Tangent;
+  for (const Method method : {Method::kLevenbergMarquardt, Method::kDogLeg}) {
+    PoseGraph<Pose> graph = RandomGraph<Pose>(10, 0, 85);
+    Tangent weights = Tangent::Ones();
+    weights(1) = 0.0;
+    graph.constraints[4].information = weights.asDiagonal();
+    graph.constraints[4].T_from_to = Pose(Tangent(5.0 * Tangent::Unit(0) + 5.0 * Tangent::Unit(1)));
+    OptimizerOptions options;
+    options.method = method;
+    const OptimizerResult result = Optimizer<Pose>(options).Optimize(&graph);
+    EXPECT_EQ(result.termination, Termination::kConverged);
+    EXPECT_LT(result.final_error, 1e-6);
+    options.method = Method::kGaussNewton;
+    graph = RandomGraph<Pose>(10, 0, 85);
+    graph.constraints[4].information = weights.asDiagonal();
+    EXPECT_EQ(Optimizer<Pose>(options).Optimize(&graph).termination, Termination::kIndefinite);
+  }
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, ANodeOfWhichConstraintsSayNothingDoesNotStopTheOthers) {
+  using Information = typename Constraint<TypeParam>::Information;
+  PoseGraph<TypeParam> graph = RandomGraph<TypeParam>(20, 15, 89);
+  PoseGraph<TypeParam> expected = graph;
+  Optimizer<TypeParam>().Optimize(&expected);
+  graph.poses.emplace_back();
+  graph.constraints.push_back({19, 20, {}, Information::Zero()});
+  Optimizer<TypeParam> optimizer;
+  const OptimizerResult result = optimizer.Optimize(&graph);
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_NEAR(result.final_error, TotalChi2(expected), 1e-6 * result.final_error);
+  EXPECT_FALSE(optimizer.ComputeMarginals(graph).has_value());
+}
+
+TYPED_TEST(AnyPoseOptimizerTest, RefusesGraphsThatAreNotValid) {
+  PoseGraph<TypeParam> graph = RandomGraph<TypeParam>(5, 0, 88);
+  graph.constraints[2].to = 99;
+  EXPECT_THROW(Optimizer<TypeParam>().Optimize(&graph), Error);
+}
+
+// Figure 12 of the tutorial.
+TEST(Optimizer, ComesRoundTheSphereOnTheManifoldButNotInEulerAngles) {
+  const PoseGraph<SE3> start = test_support::SphereWorld(12, 24, 0.2, 1);
+  OptimizerOptions options;
+  options.method = Method::kGaussNewton;
+  options.max_iterations = 30;
+  PoseGraph<SE3> graph = start;
+  const OptimizerResult manifold = Optimizer<SE3>(options).Optimize(&graph);
+  EXPECT_EQ(manifold.termination, Termination::kConverged);
+  // As many squared standard deviations as there are more measurements than unknowns.
+  const double expected = 6.0 * static_cast<double>(graph.constraints.size() - graph.poses.size());
+  EXPECT_NEAR(manifold.final_error, expected, 6.0 * std::sqrt(2.0 * expected));
+  for (const Method method : {Method::kGaussNewton, Method::kLevenbergMarquardt}) {
+    options.method = method;
+    options.parametrization = Parametrization::kEuler;
+    graph = start;
+    const OptimizerResult euler = Optimizer<SE3>(options).Optimize(&graph);
+    EXPECT_GT(euler.final_error, 3.0 * manifold.final_error) << static_cast<int>(method);
+    EXPECT_LE(euler.final_error, euler.initial_error);
+  }
+}
+
+TEST(OptimizerOptions, NameWhatIsOutOfRange) {
+  const auto message = [](auto change) {
+    OptimizerOptions options;
+    change(&options);
+    try {
+      Optimizer<SE2> optimizer(options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kUsage);
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(message([](auto* o) { o->max_iterations = -1; }), HasSubstr("max_iterations is -1"));
+  EXPECT_THAT(message([](auto* o) { o->relative_decrease = -0.5; }),
+              HasSubstr("relative_decrease is -0.5"));
+  EXPECT_THAT(message([](auto* o) { o->absolute_decrease = std::nan(""); }),
+              HasSubstr("absolute_decrease is nan"));
+  EXPECT_THAT(message([](auto* o) { o->threads = 0; }), HasSubstr("threads is 0"));
+  EXPECT_THAT(message([](auto* o) { o->loss.width = 0.0; }), HasSubstr("width is 0"));
+  EXPECT_THAT(message([](auto* o) { o->graduated = true; }), HasSubstr("graduated"));
+}
+
+}  // namespace
+}  // namespace loopgrid

@@ -1,0 +1,214 @@
+#include "frontend/closing/closure_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "backend/solve/marginals.h"
+#include "tests/support/graphs.h"
+
+namespace loopgrid {
+namespace {
+
+using test_support::NoisyConstraint;
+using test_support::RandomGraph;
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+// Where the nodes of RandomGraph(nodes, 0, seed) were before noise, but for its few per cent.
+void AddChain(const PoseGraph<SE2>& chain, int from, int to, ClosureGraph* graph) {
+  for (int i = from; i < to; ++i) {
+    if (i == 0) {
+      graph->AddNode(chain.poses[0], SE2(), Eigen::Matrix3d::Zero());
+      continue;
+    }
+    const Constraint<SE2>& step = chain.constraints[Index(i - 1)];
+    const SE2& last = graph->graph().poses.back();
+    graph->AddNode(last * step.T_from_to, step.T_from_to, step.information.inverse());
+  }
+}
+
+// A closure that says what the chain says, but for its own small noise.
+Constraint<SE2> TrueClosure(const PoseGraph<SE2>& chain, int from, int to, unsigned seed) {
+  std::mt19937 random(seed);
+  Constraint<SE2> closure = NoisyConstraint(chain.poses, from, to, &random);
+  closure.robust = true;
+  return closure;
+}
+
+Constraint<SE2> FalseClosure(const PoseGraph<SE2>& chain, int from, int to, unsigned seed) {
+  Constraint<SE2> closure = TrueClosure(chain, from, to, seed);
+  closure.T_from_to = closure.T_from_to * SE2(6.0, -8.0, 1.5);
+  return closure;
+}
+
+// Chains whose steps are sure enough to speak against a wrong closure.
+PoseGraph<SE2> Chain(int nodes, unsigned seed) {
+  PoseGraph<SE2> chain = RandomGraph(nodes, 0, seed);
+  for (Constraint<SE2>& step : chain.constraints) step.information *= 100.0;
+  return chain;
+}
+
+void ExpectCovariancesAreTheBackends(const ClosureGraph& graph) {
+  RobustLoss loss;
+  loss.kind = LossKind::kHuber;
+  const std::optional<std::vector<Eigen::Matrix3d>> expected =
+      RelativeCovariances(graph.graph(), graph.size() - 1, loss);
+  ASSERT_TRUE(expected);
+  ASSERT_EQ(graph.relative_covariances().size(), expected->size());
+  for (std::size_t i = 0; i < expected->size(); ++i) {
+    const Eigen::Matrix3d& covariance = graph.relative_covariances()[i];
+    EXPECT_LE((covariance - (*expected)[i]).norm(), 1e-9 * (*expected)[i].norm()) << i;
+  }
+}
+
+void ExpectSamePoses(const std::vector<SE2>& a, const std::vector<SE2>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].coordinates(), b[i].coordinates());
+}
+
+TEST(ClosureGraph, TheFirstNodeTakesNoConstraint) {
+  ClosureGraph graph;
+  EXPECT_EQ(graph.size(), 0);
+  graph.AddNode(SE2(1.0, 2.0, 3.0), SE2(), Eigen::Matrix3d::Zero());
+  EXPECT_EQ(graph.size(), 1);
+  EXPECT_TRUE(graph.graph().constraints.empty());
+  EXPECT_TRUE(graph.relative_covariances().at(0).isZero(0.0));
+}
+
+TEST(ClosureGraph, CovariancesAreTheBackendsAlongChainsAndClosures) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const PoseGraph<SE2> chain = Chain(60, seed);
+    ClosureGraph graph;
+    AddChain(chain, 0, 20, &graph);
+    ExpectCovariancesAreTheBackends(graph);
+    ASSERT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 2, 19, seed)}));
+    ExpectCovariancesAreTheBackends(graph);
+    AddChain(chain, 20, 45, &graph);
+    ExpectCovariancesAreTheBackends(graph);
+    ASSERT_TRUE(graph.TryClosures(
+        std::vector{TrueClosure(chain, 5, 44, seed), TrueClosure(chain, 40, 7, seed + 9)}));
+    ExpectCovariancesAreTheBackends(graph);
+    EXPECT_FALSE(graph.TryClosures(std::vector{FalseClosure(chain, 1, 43, seed)}));
+    ExpectCovariancesAreTheBackends(graph);
+    AddChain(chain, 45, 60, &graph);
+    ExpectCovariancesAreTheBackends(graph);
+    graph.Settle(std::vector{TrueClosure(chain, 10, 59, seed)});
+    ExpectCovariancesAreTheBackends(graph);
+  }
+}
+
+TEST(ClosureGraph, KeepsARightClosureAndGoesByIt) {
+  const PoseGraph<SE2> chain = Chain(30, 11);
+  ClosureGraph graph;
+  AddChain(chain, 0, 30, &graph);
+  Constraint<SE2> closure = TrueClosure(chain, 3, 28, 11);
+  closure.T_from_to = closure.T_from_to * SE2(0.02, -0.01, 0.005);
+  const double before = graph.Chi2(closure);
+  ASSERT_TRUE(graph.TryClosures(std::vector{closure}));
+  EXPECT_EQ(graph.graph().constraints.size(), 30U);
+  EXPECT_LT(graph.Chi2(closure), 0.9 * before);
+  EXPECT_LE(graph.Chi2(closure), ClosureGraph::kMaxChi2);
+}
+
+TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
+  for (unsigned seed = 20; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    const PoseGraph<SE2> chain = Chain(40, seed);
+    ClosureGraph graph;
+    AddChain(chain, 0, 40, &graph);
+    ASSERT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 4, 35, seed)}));
+    const PoseGraph<SE2> before = graph.graph();
+    EXPECT_FALSE(graph.TryClosures(std::vector{FalseClosure(chain, 2, 39, seed)}));
+    ExpectSamePoses(graph.graph().poses, before.poses);
+    EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size());
+    // It takes nothing with it.
+    EXPECT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 6, 37, seed + 2)}));
+    EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size() + 1);
+  }
+}
+
+TEST(ClosureGraph, OfThreeRightAndAWrongClosureKeepsTheRightOnes) {
+  for (unsigned seed = 20; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    const PoseGraph<SE2> chain = Chain(40, seed);
+    ClosureGraph graph;
+    AddChain(chain, 0, 40, &graph);
+    std::vector<Constraint<SE2>> removed;
+    const std::vector<Constraint<SE2>> closures = {
+        TrueClosure(chain, 5, 36, seed), FalseClosure(chain, 2, 39, seed),
+        TrueClosure(chain, 7, 34, seed), TrueClosure(chain, 3, 37, seed)};
+    ASSERT_TRUE(graph.TryClosures(closures, &removed));
+    ASSERT_EQ(removed.size(), 1U);
+    EXPECT_EQ(removed[0].from, 2);
+    EXPECT_EQ(graph.graph().constraints.size(), 39U + 3U);
+    ExpectCovariancesAreTheBackends(graph);
+  }
+}
+
+TEST(ClosureGraph, AWrongClosureGivesWayToTheRightOnesThatComeLater) {
+  const PoseGraph<SE2> chain = Chain(40, 31);
+  ClosureGraph graph;
+  // Nothing speaks against it yet: its own part of the chain is loose.
+  AddChain(chain, 0, 40, &graph);
+  Constraint<SE2> wrong = TrueClosure(chain, 3, 30, 31);
+  wrong.T_from_to = wrong.T_from_to * SE2(0.6, 0.4, 0.1);
+  ASSERT_TRUE(graph.TryClosures(std::vector{wrong}));
+  std::vector<Constraint<SE2>> right;
+  for (int i = 0; i < 4; ++i) {
+    right.push_back(TrueClosure(chain, i + 1, 29 + i, 31));
+    right.back().information *= 100.0;
+  }
+  std::vector<Constraint<SE2>> removed;
+  ASSERT_TRUE(graph.TryClosures(right, &removed));
+  ASSERT_EQ(removed.size(), 1U);
+  EXPECT_EQ(removed[0].from, wrong.from);
+  EXPECT_EQ(graph.graph().constraints.size(), 39U + 4U);
+  ExpectCovariancesAreTheBackends(graph);
+}
+
+TEST(ClosureGraph, SettleTakesOutThePlantedOutlierAmongGoodLinks) {
+  for (unsigned seed = 30; seed < 36; ++seed) {
+    SCOPED_TRACE(seed);
+    const PoseGraph<SE2> chain = Chain(50, seed);
+    ClosureGraph graph;
+    AddChain(chain, 0, 50, &graph);
+    std::vector<Constraint<SE2>> links;
+    for (int i = 0; i < 20; ++i) links.push_back(TrueClosure(chain, i, 49 - i, seed));
+    links[7] = FalseClosure(chain, 7, 42, seed);
+    const std::vector<Constraint<SE2>> removed = graph.Settle(links);
+    EXPECT_TRUE(std::any_of(removed.begin(), removed.end(),
+                            [](const Constraint<SE2>& c) { return c.from == 7 && c.to == 42; }));
+    EXPECT_LE(removed.size(), 5U);  // it may take some that it pulled hard with it
+    EXPECT_EQ(graph.graph().constraints.size(), 49U + 20U - removed.size());
+    for (int i = 0; i < 50; ++i) {
+      EXPECT_LT(graph.graph().poses[Index(i)].Boxminus(chain.poses[Index(i)]).norm(), 0.3) << i;
+    }
+  }
+}
+
+TEST(ClosureGraph, SettlesWithoutLinksClosuresOrNodes) {
+  ClosureGraph empty;
+  EXPECT_TRUE(empty.Settle({}).empty());
+  EXPECT_EQ(empty.size(), 0);
+  ClosureGraph one;
+  one.AddNode(SE2(), SE2(), Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(one.Settle({}).empty());
+  EXPECT_TRUE(one.relative_covariances().at(0).isZero(0.0));
+  const PoseGraph<SE2> chain = Chain(10, 40);
+  ClosureGraph graph;
+  AddChain(chain, 0, 10, &graph);
+  const std::vector<SE2> before = graph.graph().poses;
+  EXPECT_TRUE(graph.Settle({}).empty());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT(graph.graph().poses[i].Boxminus(before[i]).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace loopgrid
