@@ -7,7 +7,7 @@
 #include "apps/online/latency_histogram.h"
 #include "apps/online/source/line_queue.h"
 #include "apps/online/source/line_source.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/observation/log_reader.h"
 
 namespace loopgrid {
 

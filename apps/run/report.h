@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/settings/run_options.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/observation/log_reader.h"
 #include "frontend/slam/slam.h"
 
 namespace loopgrid {

@@ -13,7 +13,7 @@
 #include "apps/run/run_outputs.h"
 #include "backend/base/error.h"
 #include "backend/base/stopwatch.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "frontend/slam/slam.h"
 
 namespace loopgrid {

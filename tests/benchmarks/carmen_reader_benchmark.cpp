@@ -10,7 +10,7 @@
 
 #include "backend/base/gzip.h"
 #include "backend/base/line_reader.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid {

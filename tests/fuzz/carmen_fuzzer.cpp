@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "backend/base/error.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "tests/support/memory_file.h"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "backend/base/input_file.h"
 #include "frontend/evaluation/tum_file.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "tests/support/memory_file.h"
 #include "tests/support/office_world.h"
 

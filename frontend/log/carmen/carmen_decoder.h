@@ -8,7 +8,7 @@
 
 #include "frontend/log/carmen/carmen_interpreter.h"
 #include "frontend/log/carmen/laser_mount.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/observation/log_reader.h"
 
 namespace loopgrid {
 

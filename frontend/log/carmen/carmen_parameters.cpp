@@ -1,6 +1,5 @@
 #include "frontend/log/carmen/carmen_parameters.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,24 +40,6 @@ constexpr std::array<Parameter, 10> kParameters = {{
     {"robot_rear_laser_max", kRear, &Fields::max_range, 0.0, kFarthestRange, false},
 }};
 
-/// How many steps the field of view is divided into: an even count lacks the last beam.
-std::size_t StepsOf(std::size_t count) { return std::max<std::size_t>(count - count % 2, 1); }
-
-/// The field of view of scanners with so many steps between beams, radians.
-double UsualFieldOfView(std::size_t steps) {
-  switch (steps) {
-    case 400:
-      return 100.0 * kDegree;  // SICK LMS in its 100 degree mode
-    case 540:
-    case 1080:
-      return 270.0 * kDegree;  // SICK LMS1xx, Hokuyo UTM-30LX
-    case 682:
-      return 682.0 * 360.0 / 1024.0 * kDegree;  // Hokuyo URG-04LX
-    default:
-      return 180.0 * kDegree;
-  }
-}
-
 }  // namespace
 
 bool IsFrontLaser(CarmenTag tag) {
@@ -98,12 +79,6 @@ const CarmenLaserParameters& CarmenParameters::Of(CarmenTag tag) const {
   return lasers_[IsRearLaser(tag) ? kRear : kOther];
 }
 
-BeamAngles UsualBeamAngles(std::size_t count) {
-  const std::size_t steps = StepsOf(count);
-  const double field_of_view = UsualFieldOfView(steps);
-  return {-0.5 * field_of_view, field_of_view / static_cast<double>(steps)};
-}
-
 BeamAngles BeamAnglesOf(const CarmenLaserMessage& message,
                         const CarmenLaserParameters& parameters) {
   const BeamAngles usual = UsualBeamAngles(message.ranges.size());
@@ -111,7 +86,7 @@ BeamAngles BeamAnglesOf(const CarmenLaserMessage& message,
   if (message.has_angles) {
     stated = {message.start_angle, message.angular_resolution};
     if (stated.step == 0.0) {
-      stated.step = message.field_of_view / static_cast<double>(StepsOf(message.ranges.size()));
+      stated.step = message.field_of_view / static_cast<double>(BeamSteps(message.ranges.size()));
     }
   } else if (parameters.resolution > 0.0) {
     stated.step = parameters.resolution * kDegree;

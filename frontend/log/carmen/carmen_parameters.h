@@ -1,12 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string>
 #include <string_view>
 
 #include "backend/geometry/se2.h"
 #include "frontend/log/carmen/carmen_line.h"
+#include "frontend/log/observation/beam_angles.h"
 
 namespace loopgrid {
 
@@ -45,17 +45,6 @@ class CarmenParameters {
  private:
   std::array<CarmenLaserParameters, 3> lasers_;  // front, rear, others
 };
-
-/// Direction of the first beam in the laser frame and the step to the next, radians.
-struct BeamAngles {
-  double first = 0.0;
-  double step = 0.0;
-};
-
-/// The fan that scanners with so many readings have: 180 and 181 readings step by 1 degree from
-/// -90, 360 and 361 by half a degree, and so on; counts that only wider scanners have get their
-/// field of view. An even count lacks the last beam of a symmetric fan: 180 readings end at +89.
-BeamAngles UsualBeamAngles(std::size_t count);
 
 /// The directions of a message's beams. ROBOTLASER and RAWLASER state them. For FLASER and RLASER
 /// the resolution comes from PARAM if given there, and the fan is as in UsualBeamAngles().

@@ -2,7 +2,7 @@
 
 #include "backend/base/line_reader.h"
 #include "frontend/log/carmen/carmen_decoder.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/observation/log_reader.h"
 
 namespace loopgrid {
 

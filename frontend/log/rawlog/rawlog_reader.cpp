@@ -17,7 +17,8 @@
 #include <utility>
 
 #include "backend/base/error.h"
-#include "frontend/log/carmen/carmen_parameters.h"
+#include "frontend/log/observation/beam_angles.h"
+#include "frontend/log/observation/observation.h"
 #include "frontend/log/observation/plausible_pose.h"
 #include "frontend/log/rawlog/rawlog_stream.h"
 

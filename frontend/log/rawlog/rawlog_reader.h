@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "backend/base/input_file.h"
-#include "frontend/log/log_reader.h"
+#include "frontend/log/observation/log_reader.h"
 
 namespace loopgrid {
 

@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "frontend/slam/slam.h"
 
 int main(int, char** argv) {

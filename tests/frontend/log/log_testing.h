@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid::test_support {

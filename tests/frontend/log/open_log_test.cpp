@@ -1,4 +1,4 @@
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,7 @@ namespace loopgrid {
 namespace {
 
 using test_support::MemoryFile;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
 TEST(OpenLog, RefusesAMissingFileAndADirectory) {
@@ -51,25 +49,6 @@ TEST(OpenLog, AFileOfCommentsIsALogWithoutScans) {
   EXPECT_EQ(log.statistics.lines, 2);
   EXPECT_EQ(log.statistics.ignored, 2);
   EXPECT_EQ(log.statistics.malformed, 0);
-}
-
-TEST(CountMalformed, KeepsTheFirstFewProblems) {
-  LogReaderOptions options;
-  options.max_reported_problems = 2;
-  LogStatistics statistics;
-  for (const char* problem : {"a:1: x", "a:2: x", "a:3: x"}) {
-    CountMalformed(problem, options, &statistics);
-  }
-  EXPECT_EQ(statistics.malformed, 3);
-  EXPECT_THAT(statistics.first_problems, ElementsAre("a:1: x", "a:2: x"));
-}
-
-TEST(CountMalformed, ThrowsInStrictMode) {
-  LogReaderOptions options;
-  options.strict = true;
-  LogStatistics statistics;
-  EXPECT_THAT([&] { CountMalformed("a:1: x", options, &statistics); },
-              ThrowsMessage<Error>("a:1: x"));
 }
 
 }  // namespace

@@ -1,21 +1,15 @@
-#include "frontend/log/log_reader.h"
+#include "frontend/log/open_log.h"
 
+#include <string_view>
 #include <utility>
 
 #include "backend/base/error.h"
+#include "backend/base/input_file.h"
+#include "backend/base/line_reader.h"
 #include "frontend/log/carmen/carmen_reader.h"
 #include "frontend/log/rawlog/rawlog_reader.h"
 
 namespace loopgrid {
-
-void CountMalformed(const std::string& problem, const LogReaderOptions& options,
-                    LogStatistics* statistics) {
-  if (options.strict) throw Error(ErrorCode::kInput, problem);
-  ++statistics->malformed;
-  if (static_cast<int>(statistics->first_problems.size()) < options.max_reported_problems) {
-    statistics->first_problems.push_back(problem);
-  }
-}
 
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptions& options) {
   InputFile file(path);

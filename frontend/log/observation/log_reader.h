@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,9 +45,5 @@ class LogReader {
 /// (kInput) in strict mode.
 void CountMalformed(const std::string& problem, const LogReaderOptions& options,
                     LogStatistics* statistics);
-
-/// Opens a log of any known kind: CARMEN text or MRPT rawlog, plain or gzipped, told apart by
-/// content. Throws Error (kInput) for a missing, unreadable or empty file, or a directory.
-std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptions& options = {});
 
 }  // namespace loopgrid
