@@ -1,9 +1,16 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds and runs every test with g++, warnings being errors. Then, with
-# clang++ and warnings again, all tests but those on whole recordings under AddressSanitizer and
-# UndefinedBehaviorSanitizer. Set LOOPGRID_DATA to a folder of recordings to test with them too.
+# Installs what is missing, then builds and runs the tests of each preset named (by default of all):
+#   ci    release by g++, warnings are errors: every test, on whole recordings too
+#   asan  AddressSanitizer and UndefinedBehaviorSanitizer by clang++, warnings are errors: every
+#         test but those on whole recordings and in a browser
+#   tsan  ThreadSanitizer: the tests that use threads
+# Usage: tests/run.sh [PRESET...]
+# Set LOOPGRID_DATA to a folder of recordings to test with them too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+presets=("$@")
+[[ ${#presets[@]} -gt 0 ]] || presets=(ci asan tsan)
 
 step() { printf '\n== %s (%d min %02d s)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
@@ -14,15 +21,11 @@ step "formatting"
 find apps backend frontend mapping tests -name '*.h' -print0 -o -name '*.cpp' -print0 |
   xargs -0 clang-format --dry-run -Werror
 
-step "release build"
-cmake --preset ci
-cmake --build --preset ci
-step "release tests"
-ctest --test-dir build/ci --output-on-failure -j "$(nproc)"
-
-step "sanitizer build"
-cmake --preset asan
-cmake --build --preset asan
-step "sanitizer tests"
-ctest --test-dir build/asan --output-on-failure -j "$(nproc)" --label-exclude recordings
+for preset in "${presets[@]}"; do
+  step "build $preset"
+  cmake --preset "$preset"
+  cmake --build --preset "$preset"
+  step "test $preset"
+  ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)"
+done
 step "done"
