@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that are missing; does nothing (and needs no network) if none is.
-# Usage: apps/install_packages.sh [tests]   (with `tests`: what the tests need too)
+# Usage: apps/install_packages.sh [tests|tidy]   (what the tests, or tests/tidy.sh, need too)
 set -euo pipefail
 
 packages=(
@@ -16,6 +16,8 @@ if [[ "${1:-}" == tests ]]; then
     libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
     chromium chromium-driver
   )
+elif [[ "${1:-}" == tidy ]]; then
+  packages+=(clang clang-tidy)
 fi
 
 if ! command -v dpkg-query >/dev/null; then
