@@ -1,0 +1,16 @@
+#pragma once
+
+namespace loopgrid::test_support {
+
+/// How much of a repeated computation a test does: `full` in a normal build, `sanitized` under a
+/// sanitizer, which makes it about ten times slower and sees a defect in the first few rounds.
+template <typename T>
+constexpr T Effort(T full, [[maybe_unused]] T sanitized) {
+#ifdef LOOPGRID_SANITIZED
+  return sanitized;
+#else
+  return full;
+#endif
+}
+
+}  // namespace loopgrid::test_support
