@@ -44,8 +44,7 @@ const std::vector<Room>& Rooms() {
 
       {"frontend/log/observation", {"backend/geometry", "backend/base"}},
       {"frontend/log/carmen", {"frontend/log/observation", "backend/geometry", "backend/base"}},
-      {"frontend/log/rawlog",
-       {"frontend/log/observation", "frontend/log/carmen", "backend/geometry", "backend/base"}},
+      {"frontend/log/rawlog", {"frontend/log/observation", "backend/geometry", "backend/base"}},
       {"frontend/log",
        {"frontend/log/rawlog", "frontend/log/carmen", "frontend/log/observation",
         "backend/geometry", "backend/base"}},

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "frontend/closing/closure_record.h"
+#include "frontend/closing/closure.h"
 #include "frontend/matching/point_scan.h"
 #include "frontend/slam/slam.h"
 
@@ -25,7 +25,7 @@ struct OnlineUpdate {
   double latency_seconds = 0.0;             ///< from the arrival of its line to its pose
   ScanPlace place;                          ///< of the scan
   std::shared_ptr<const PointScan> points;  ///< null if the scan adds nothing to the map
-  std::vector<ClosureRecord> closures;      ///< new ones and changed ones
+  std::vector<Closure> closures;      ///< new ones and changed ones
   std::shared_ptr<const NodeStates> nodes;  ///< where tracked.optimized: they have moved
 };
 

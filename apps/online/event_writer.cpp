@@ -82,7 +82,7 @@ void AddNode(const OnlineUpdate& update, std::string* text) {
   *text += "}\n";
 }
 
-void AddClosure(const ClosureRecord& closure, std::string* text) {
+void AddClosure(const Closure& closure, std::string* text) {
   fmt::format_to(std::back_inserter(*text),
                  R"({{"event":"closure","from":{},"to":{},"outcome":"{}","score":{:.4f},)"
                  R"("chi2":{:.4g},"reason":"{}"}})"
@@ -125,7 +125,7 @@ void EventWriter::Scan(const OnlineUpdate& update) {
   if (!enabled()) return;
   AddScan(update, &buffer_);
   if (update.tracked.node >= 0) AddNode(update, &buffer_);
-  for (const ClosureRecord& closure : update.closures) AddClosure(closure, &buffer_);
+  for (const Closure& closure : update.closures) AddClosure(closure, &buffer_);
   if (update.tracked.optimized) {
     fmt::format_to(std::back_inserter(buffer_),
                    R"({{"event":"optimization","scan":{}}})"

@@ -6,11 +6,11 @@
 
 namespace loopgrid {
 
-std::string FormatClosuresCsv(const std::vector<ClosureRecord>& closures) {
+std::string FormatClosuresCsv(const std::vector<Closure>& closures) {
   std::string text =
       "from,to,time,distance_sigmas,score,second_score,denied_share,x,y,theta,"
       "cov_xx,cov_xy,cov_xt,cov_yy,cov_yt,cov_tt,chi2,outcome\n";
-  for (const ClosureRecord& closure : closures) {
+  for (const Closure& closure : closures) {
     const SE2& pose = closure.T_from_to;
     const Eigen::Matrix3d& cov = closure.covariance;
     fmt::format_to(std::back_inserter(text),

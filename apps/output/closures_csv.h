@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "frontend/closing/closure_record.h"
+#include "frontend/closing/closure.h"
 
 namespace loopgrid {
 
 /// The audit trail of loop closing as CSV text: a header, then one line a closure tried, in order.
 /// Metres, radians, seconds; x, y, theta and the covariance are those of T_from_to.
-std::string FormatClosuresCsv(const std::vector<ClosureRecord>& closures);
+std::string FormatClosuresCsv(const std::vector<Closure>& closures);
 
 }  // namespace loopgrid

@@ -13,7 +13,7 @@ void Describe(const Slam& slam, RunReport* report) {
   report->slam = slam.statistics();
   report->nodes = static_cast<int>(slam.graph().poses.size());
   report->constraints = static_cast<int>(slam.graph().constraints.size());
-  for (const ClosureRecord& closure : slam.closures()) {
+  for (const Closure& closure : slam.closures()) {
     ++report->closures[ToString(closure.outcome)];
   }
 }

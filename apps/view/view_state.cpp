@@ -44,7 +44,7 @@ bool IsRefused(ClosureOutcome outcome) {
   return outcome != ClosureOutcome::kPending && outcome != ClosureOutcome::kAccepted;
 }
 
-std::string ClosureJson(std::int64_t id, const ClosureRecord& record) {
+std::string ClosureJson(std::int64_t id, const Closure& record) {
   return fmt::format(
       R"({{"id":{},"from":{},"to":{},"time":{},"outcome":"{}","reason":"{}","score":{},)"
       R"("distance":{},"distance_sigmas":{}}})",
@@ -70,7 +70,7 @@ ViewState::ViewState(std::string run, double resolution)
 void ViewState::Apply(const OnlineUpdate& update) {
   if (update.tracked.scan >= 0) TakeScan(update);
   if (update.nodes != nullptr) TakeNodes(*update.nodes);
-  for (const ClosureRecord& record : update.closures) TakeClosure(record);
+  for (const Closure& record : update.closures) TakeClosure(record);
 }
 
 void ViewState::TakeScan(const OnlineUpdate& update) {
@@ -109,10 +109,10 @@ void ViewState::TakeNodes(const NodeStates& states) {
   nodes_moved_ = true;
 }
 
-void ViewState::TakeClosure(const ClosureRecord& record) {
+void ViewState::TakeClosure(const Closure& record) {
   const NodePair pair(record.from, record.to);
   const auto [place, is_new] = closures_.try_emplace(pair);
-  Closure& closure = place->second;
+  ShownClosure& closure = place->second;
   if (is_new) {
     closure.id = next_closure_++;
   } else {
@@ -174,7 +174,7 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
   if (!changed_closures_.empty()) {
     std::vector<std::string> changed;
     for (const NodePair& pair : changed_closures_) {
-      const Closure& closure = closures_.at(pair);
+      const ShownClosure& closure = closures_.at(pair);
       changed.push_back(ClosureJson(closure.id, closure.record));
     }
     text += Event("closures", fmt::format(R"({{"closures":[{}]}})", fmt::join(changed, ",")));

@@ -43,9 +43,9 @@ class ViewState {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // in the node's own frame
     bool linked = false;                                   // reached from the one before
   };
-  struct Closure {
+  struct ShownClosure {
     std::int64_t id = 0;  // in order of appearance
-    ClosureRecord record;
+    Closure record;
   };
   using NodePair = std::pair<int, int>;
 
@@ -53,7 +53,7 @@ class ViewState {
   void TakeScan(const OnlineUpdate& update);
   void AddNode(const SE2& pose);
   void TakeNodes(const NodeStates& states);
-  void TakeClosure(const ClosureRecord& record);
+  void TakeClosure(const Closure& record);
   std::string NodesJson(std::size_t first) const;
   std::string CountersJson() const;
 
@@ -69,7 +69,7 @@ class ViewState {
   std::size_t nodes_told_ = 0;
   bool nodes_moved_ = false;
 
-  std::map<NodePair, Closure> closures_;
+  std::map<NodePair, ShownClosure> closures_;
   std::set<NodePair> changed_closures_;  // not told yet
   std::deque<NodePair> refused_;         // oldest first
   std::int64_t next_closure_ = 0;

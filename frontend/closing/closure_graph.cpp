@@ -6,35 +6,39 @@
 #include <utility>
 
 #include "backend/solve/marginals.h"
+#include "backend/solve/optimizer_options.h"
+#include "frontend/tracking/pose_covariance.h"
 
 namespace loopgrid {
 namespace {
 
-OptimizerOptions WhileGrowing() {
-  OptimizerOptions options;
-  options.max_iterations = 30;
-  options.relative_decrease = 1e-4;
-  options.absolute_decrease = 1e-3;
-  options.loss.kind = LossKind::kHuber;
-  return options;
+OptimizerOptions WhileGrowing(const ClosureGraphOptions& options) {
+  OptimizerOptions optimizer;
+  optimizer.loss = options.loss;
+  optimizer.max_iterations = options.max_iterations;
+  optimizer.relative_decrease = options.relative_decrease;
+  optimizer.absolute_decrease = options.absolute_decrease;
+  return optimizer;
 }
 
-OptimizerOptions AtTheEnd() {
-  OptimizerOptions options;
-  options.loss.kind = LossKind::kHuber;
-  return options;
+OptimizerOptions AtTheEnd(const ClosureGraphOptions& options) {
+  OptimizerOptions optimizer;
+  optimizer.loss = options.loss;
+  optimizer.max_iterations = options.last_max_iterations;
+  optimizer.relative_decrease = options.last_relative_decrease;
+  optimizer.absolute_decrease = options.last_absolute_decrease;
+  return optimizer;
 }
 
 }  // namespace
 
-Eigen::Matrix3d ComposeCovariances(const Eigen::Matrix3d& first, const SE2& step,
-                                   const Eigen::Matrix3d& second) {
-  const Eigen::Matrix3d A = step.Inverse().Adjoint();
-  const Eigen::Matrix3d sum = A * first * A.transpose() + second;
-  return 0.5 * (sum + sum.transpose());  // symmetric to the last bit
-}
+ClosureGraph::ClosureGraph(const ClosureGraphOptions& options)
+    : options_(options), optimizer_(WhileGrowing(options)) {}
 
-ClosureGraph::ClosureGraph() : optimizer_(WhileGrowing()) {}
+void ClosureGraph::AddConstraint(ClosureId id, const Constraint<SE2>& constraint) {
+  graph_.constraints.push_back(constraint);
+  ids_.push_back(id);
+}
 
 void ClosureGraph::AddNode(const SE2& T_map_node, const SE2& T_parent_node,
                            const Eigen::Matrix3d& covariance, int parent) {
@@ -48,7 +52,7 @@ void ClosureGraph::AddNode(const SE2& T_map_node, const SE2& T_parent_node,
   if (parent < 0) parent = node - 1;
   if (parent != node - 1) UpdateCovariances(&optimizer_, parent);
   graph_.poses.push_back(T_map_node);
-  graph_.constraints.push_back({parent, node, T_parent_node, covariance.inverse(), false});
+  AddConstraint(kNoClosure, {parent, node, T_parent_node, covariance.inverse(), false});
   ExtendRelativeCovariances(graph_, graph_.constraints.back(), &covariances_);
   map_covariances_.push_back(ComposeCovariances(map_covariances_[static_cast<std::size_t>(parent)],
                                                 T_parent_node, covariance));
@@ -68,9 +72,17 @@ double ClosureGraph::Chi2(const Constraint<SE2>& constraint) const {
   return e.dot(constraint.information * e);
 }
 
+std::vector<ClosureConstraint> ClosureGraph::Closures() const {
+  std::vector<ClosureConstraint> closures;
+  for (std::size_t k = 0; k < ids_.size(); ++k) {
+    if (graph_.constraints[k].robust) closures.push_back({ids_[k], graph_.constraints[k]});
+  }
+  return closures;
+}
+
 int ClosureGraph::WorstClosure() const {
   int worst = -1;
-  double worst_chi2 = kMaxChi2;
+  double worst_chi2 = options_.max_chi2;
   for (std::size_t k = 0; k < graph_.constraints.size(); ++k) {
     const Constraint<SE2>& c = graph_.constraints[k];
     if (!c.robust) continue;
@@ -82,24 +94,27 @@ int ClosureGraph::WorstClosure() const {
   return worst;
 }
 
-bool ClosureGraph::TryClosures(std::span<const Constraint<SE2>> closures,
-                               std::vector<Constraint<SE2>>* removed) {
+bool ClosureGraph::TryClosures(std::span<const ClosureConstraint> closures,
+                               std::vector<ClosureId>* removed) {
   const PoseGraph<SE2> before = graph_;
+  const std::vector<ClosureId> ids_before = ids_;
   int old_ones = static_cast<int>(graph_.constraints.size());
   int new_ones = static_cast<int>(closures.size());
-  std::vector<Constraint<SE2>> contradicted;
-  graph_.constraints.insert(graph_.constraints.end(), closures.begin(), closures.end());
+  std::vector<ClosureId> contradicted;
+  for (const ClosureConstraint& closure : closures) AddConstraint(closure.id, closure.constraint);
   optimizer_.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
     // Old closures give way to new ones only while those are more.
     --(worst < old_ones ? old_ones : new_ones);
-    contradicted.push_back(graph_.constraints[static_cast<std::size_t>(worst)]);
-    const int given_up = static_cast<int>(before.constraints.size()) - old_ones;
+    contradicted.push_back(ids_[static_cast<std::size_t>(worst)]);
+    const int given_up = static_cast<int>(ids_before.size()) - old_ones;
     if (new_ones == 0 || given_up > new_ones) {
       graph_ = before;
+      ids_ = ids_before;
       return false;
     }
     graph_.constraints.erase(graph_.constraints.begin() + worst);
+    ids_.erase(ids_.begin() + worst);
     optimizer_.Optimize(&graph_);
   }
   if (removed != nullptr) *removed = std::move(contradicted);
@@ -114,25 +129,34 @@ void ClosureGraph::UpdateCovariances(Optimizer<SE2>* optimizer, int relative_to)
   }
 }
 
-std::vector<Constraint<SE2>> ClosureGraph::Settle(std::span<const Constraint<SE2>> links) {
-  std::vector<Constraint<SE2>> removed;
+std::vector<ClosureId> ClosureGraph::Settle(std::span<const ClosureConstraint> links) {
+  std::vector<ClosureId> removed;
   if (size() == 0) return removed;
-  graph_.constraints.insert(graph_.constraints.end(), links.begin(), links.end());
-  Optimizer<SE2> optimizer(AtTheEnd());
+  for (const ClosureConstraint& link : links) AddConstraint(link.id, link.constraint);
+  Optimizer<SE2> optimizer(AtTheEnd(options_));
   optimizer.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
     // Wrong ones pull their neighbours off: take out those near the worst, then look again.
-    const double limit =
-        std::max(kMaxChi2, 0.5 * Chi2(graph_.constraints[static_cast<std::size_t>(worst)]));
-    const auto kept = std::stable_partition(
-        graph_.constraints.begin(), graph_.constraints.end(),
-        [&](const Constraint<SE2>& c) { return !c.robust || Chi2(c) <= limit; });
-    removed.insert(removed.end(), kept, graph_.constraints.end());
-    graph_.constraints.erase(kept, graph_.constraints.end());
+    const double worst_chi2 = Chi2(graph_.constraints[static_cast<std::size_t>(worst)]);
+    RemoveAbove(std::max(options_.max_chi2, 0.5 * worst_chi2), &removed);
     optimizer.Optimize(&graph_);
   }
   UpdateCovariances(&optimizer, size() - 1);
   return removed;
+}
+
+void ClosureGraph::RemoveAbove(double limit, std::vector<ClosureId>* removed) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < ids_.size(); ++k) {
+    if (graph_.constraints[k].robust && Chi2(graph_.constraints[k]) > limit) {
+      removed->push_back(ids_[k]);
+      continue;
+    }
+    graph_.constraints[kept] = graph_.constraints[k];
+    ids_[kept++] = ids_[k];
+  }
+  graph_.constraints.resize(kept);
+  ids_.resize(kept);
 }
 
 }  // namespace loopgrid

@@ -119,8 +119,9 @@ ClosureMatch MatchClosure(const LocalMap& map, const PointScan& scan,
   match.inlier_share = refined.inlier_share;
   match.found = refined.inlier_share >= options.min_inlier_share;
   if (!match.found) return match;
-  match.covariance = MatchCovariance(*table, points, refined);
-  match.denied_share = CompareVisibility(map, scan, refined.T_map_robot).denied_share();
+  match.covariance = MatchCovariance(*table, points, refined, options.covariance);
+  match.denied_share =
+      CompareVisibility(map, scan, refined.T_map_robot, options.visibility).denied_share();
   return match;
 }
 

@@ -5,26 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "frontend/closing/closing_options.h"
 #include "frontend/matching/correlative_matcher.h"
 #include "frontend/matching/local_map.h"
 #include "frontend/matching/match_refiner.h"
 
 namespace loopgrid {
-
-struct ClosureMatcherOptions {
-  RefinerOptions refiner;
-  double fine_resolution = 0.05;    ///< of the likelihood table for small windows, metres
-  double coarse_resolution = 0.10;  ///< ... for large ones, metres
-  double fine_sigma = 0.07;         ///< reach of a reference point in the table, metres
-  double coarse_sigma = 0.10;       ///< ... for large windows, metres
-  double coarse_from = 1.0;         ///< windows from this half width on are large, metres
-  std::size_t coarse_points = 300;  ///< searched with in large windows at most
-  double widest = 25.0;             ///< half width that is searched at most, metres
-  double min_score = 0.5;           ///< of the correlative search, 0..1
-  double min_inlier_share = 0.5;    ///< of the refined match, 0..1
-  double peak_distance = 0.8;       ///< a second peak is at least this far away, metres ...
-  double peak_angle = 0.35;         ///< ... or turned by this much, radians
-};
 
 /// Outcome of matching a node's scan with the map around an old node.
 struct ClosureMatch {

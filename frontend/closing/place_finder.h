@@ -5,19 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "frontend/closing/closing_options.h"
 #include "frontend/closing/closure_matcher.h"
 #include "frontend/closing/nodes.h"
 
 namespace loopgrid {
-
-struct PlaceFinderOptions {
-  double spacing = 5.0;        ///< between the middles of the windows searched, metres
-  double half_width = 7.0;     ///< of such a window: the robot may be off the nodes' way, metres
-  double peak_distance = 0.8;  ///< two finds this close are the same place, metres
-  double min_score = 0.65;     ///< of the search, 0..1: rooms are alike, nothing else tells
-  double min_inlier_share = 0.75;  ///< of the refined match, 0..1
-  double min_share = 0.85;         ///< of the best score, for a place to matter
-};
 
 /// A place in the map where a scan fits.
 struct FoundPlace {

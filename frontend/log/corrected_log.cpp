@@ -107,7 +107,7 @@ CorrectedLogStatistics CorrectedLogWriter::FromCarmen(LineReader lines) {
   return statistics_;
 }
 
-/// The next line of bearable length. Like the reader, takes what comes before damage for the log.
+/// The next line that is not too long. Where the file is damaged the log ends, as for the reader.
 bool CorrectedLogWriter::NextLine(LineReader* lines, std::string_view* line) {
   try {
     while (lines->Next(line)) {

@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// Where a scan was taken after all, and where its laser sits.
+/// The corrected pose of a scan, and where its laser sits.
 struct CorrectedScan {
   SE2 T_map_robot;
   SE2 T_robot_laser;
@@ -19,16 +19,15 @@ struct CorrectedLogStatistics {
   std::int64_t left_out = 0;  ///< malformed lines of the input
 };
 
-/// Writes a log again with the corrected pose of each scan that OpenLog() gives out of it, in the
-/// same order, as a CARMEN log, whole or not at all.
-/// From a CARMEN log every line goes through as it is but for the laser's pose in the laser
-/// messages, which becomes the corrected one; the robot's pose stays raw odometry. Scans of lasers
-/// not in use take the correction of the scan before them. RAWLASER messages of the laser in use,
-/// which have no place for a pose, become ROBOTLASER messages. A mount that PARAM lines do not
-/// state is stated before the first scan. Malformed lines are left out. From a rawlog, ROBOTLASER1
-/// messages are made of its scans.
-/// Throws Error (kInput) if the input cannot be read or has not `scans.size()` scans, Error
-/// (kOutput) if the output cannot be written.
+/// Writes a log again, as a CARMEN log, with a corrected pose for each scan that OpenLog() reads
+/// from it, in the same order. The file is written completely or not at all. Lines of a CARMEN log
+/// are copied. In laser messages the laser's pose is replaced by the corrected one; the robot's
+/// pose stays raw odometry. Scans of lasers not in use take the correction of the scan before them.
+/// RAWLASER messages of the laser in use, which have no field for a pose, become ROBOTLASER
+/// messages. A mount that PARAM lines do not state is stated before the first scan. Malformed lines
+/// are left out. The scans of a rawlog become ROBOTLASER1 messages. Throws Error (kInput) if the
+/// input cannot be read or has not `scans.size()` scans, Error (kOutput) if the output cannot be
+/// written.
 CorrectedLogStatistics WriteCorrectedLog(const std::string& input, const std::string& output,
                                          std::span<const CorrectedScan> scans);
 

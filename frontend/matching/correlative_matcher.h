@@ -6,15 +6,9 @@
 
 #include "backend/geometry/se2.h"
 #include "frontend/matching/likelihood_table.h"
+#include "frontend/matching/matching_options.h"
 
 namespace loopgrid {
-
-/// Where to look: half widths around the initial pose, in the map's axes.
-struct SearchWindow {
-  double x = 0.3;         ///< metres
-  double y = 0.3;         ///< metres
-  double rotation = 0.2;  ///< radians
-};
 
 /// What the odometry says: a candidate this many sigmas from the window's centre loses
 /// `weight * sigmas^2 / 2` of its score. A weight of 0 ignores the prior.

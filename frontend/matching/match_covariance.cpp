@@ -107,7 +107,10 @@ Eigen::Matrix3d MatchCovariance(const LikelihoodTable& table,
   // The curvature of the score, as far as each hit's surface is the nearest reference point.
   const double ratio = match.range_sigma / static_cast<double>(table.sigma());
   const Eigen::Matrix3d shape = options.hit_log_likelihood * ratio * ratio * match.information;
-  const Eigen::Matrix3d unknown = Eigen::Vector3d(400.0, 400.0, 9.0).cwiseInverse().asDiagonal();
+  const double translation = options.unknown_translation * options.unknown_translation;
+  const double rotation = options.unknown_rotation * options.unknown_rotation;
+  const Eigen::Matrix3d unknown =
+      Eigen::Vector3d(translation, translation, rotation).cwiseInverse().asDiagonal();
   const Eigen::Matrix3d covariance =
       (ScoreInformation(table, points, match.T_map_robot, shape, options) + unknown).inverse() +
       (match.information + unknown).inverse();

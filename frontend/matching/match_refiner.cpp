@@ -50,9 +50,10 @@ NormalEquations Linearize(const LocalMap& map, const PointScan& scan, const SE2&
   return equations;
 }
 
-// Normals are measured too. In a bare corridor their errors look like knowledge along it: each hit
-// adds about sin^2(error) where it should add nothing. Directions that know no more than this are
-// taken out of the equations, others lose as much as they owe to it.
+// Removes the information that errors of the normals seem to add. In a bare corridor each normal
+// that is off by an angle e adds about sin^2(e) to the information along the corridor, where a
+// right one adds nothing. In each principal direction the information that such errors explain is
+// subtracted; a direction that has no more than that loses all of it.
 void DiscountNormalErrors(double normal_sigma, NormalEquations* equations) {
   if (equations->weight <= 0.0) return;
   const double lever = std::sqrt(std::max(equations->weighted_lever / equations->weight, 1e-6));
@@ -87,7 +88,7 @@ RefinedMatch RefineMatch(const LocalMap& map, const PointScan& scan, const SE2& 
     Eigen::Matrix3d J = Eigen::Matrix3d::Identity();  // of `off` by a motion in the robot frame
     J.topLeftCorner<2, 2>() = off.rotation();
     Eigen::Matrix3d H = to_information * equations.H + J.transpose() * prior.information * J;
-    // A direction that nothing speaks of stays where it is.
+    // In a direction without any information the pose stays where it is.
     H.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-3);
     const Eigen::Vector3d b =
         to_information * equations.b + J.transpose() * prior.information * off.coordinates();

@@ -4,19 +4,12 @@
 
 #include "backend/geometry/se2.h"
 #include "frontend/matching/local_map.h"
+#include "frontend/matching/matching_options.h"
 #include "frontend/matching/point_scan.h"
 
 namespace loopgrid {
 
-struct RefinerOptions {
-  int max_iterations = 10;
-  double first_scale = 0.15;  ///< distance at which a residual starts to lose its say, metres ...
-  double last_scale = 0.05;   ///< ... at the end
-  double range_sigma = 0.03;  ///< standard deviation of one hit across the surface, metres
-  double normal_sigma = 0.1;  ///< standard deviation of a normal's direction, radians
-};
-
-/// A pose that the odometry suggests, and how sure it is.
+/// The pose that the odometry predicts, with its information.
 struct PosePrior {
   SE2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< in the robot's own frame

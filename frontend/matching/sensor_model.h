@@ -2,14 +2,18 @@
 
 #include <vector>
 
+#include "frontend/matching/matching_options.h"
 #include "frontend/matching/point_scan.h"
 
 namespace loopgrid {
 
-/// Learns from the scans seen so far where "no return" begins, so that nobody has to say. Causal:
-/// what it says of a scan depends on that scan and earlier ones only.
+/// Learns from the scans seen so far from which range on a reading means "no return", so that the
+/// user need not state it. Causal: how a scan is interpreted depends on it and earlier ones only.
 class SensorModel {
  public:
+  explicit SensorModel(const SensorModelOptions& options = {})
+      : options_(options), usable_range_(options.max_range) {}
+
   /// Takes the readings of `scan` into account, then makes points of it.
   PointScan Interpret(const LaserScan& scan);
 
@@ -19,8 +23,9 @@ class SensorModel {
  private:
   void Learn(const LaserScan& scan);
 
-  std::vector<int> histogram_;  ///< readings per kBinWidth metres
-  double usable_range_ = 40.0;
+  SensorModelOptions options_;
+  std::vector<int> histogram_;  ///< readings in each bin
+  double usable_range_;
 };
 
 }  // namespace loopgrid

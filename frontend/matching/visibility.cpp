@@ -10,9 +10,6 @@ namespace loopgrid {
 namespace {
 
 constexpr int kSectors = 360;
-constexpr float kTolerance = 0.4F;  // metres between a surface and the beam's end
-constexpr float kNearest = 0.3F;    // metres; closer surfaces are the robot's own business
-constexpr float kFarthest = 12.0F;  // metres; farther, a small turn misses a surface
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 // The sector that a direction in the laser frame falls into.
@@ -28,7 +25,7 @@ struct Sectors {
   std::array<float, kSectors> shortest;
   std::array<float, kSectors> longest;
 
-  explicit Sectors(const PointScan& scan) {
+  Sectors(const PointScan& scan, float farthest) {
     shortest.fill(kNothing);
     longest.fill(-1.0F);
     const SE2 T_laser_robot = scan.T_robot_laser.Inverse();
@@ -39,7 +36,7 @@ struct Sectors {
       Add(SectorOf(p), p.norm());
     }
     for (const Eigen::Vector2f& direction : scan.no_returns) {
-      Add(SectorOf(rotation * direction), kFarthest);
+      Add(SectorOf(rotation * direction), farthest);
     }
   }
 
@@ -58,8 +55,13 @@ double Visibility::denied_share() const {
   return seen > 0 ? static_cast<double>(denied) / seen : 1.0;
 }
 
-Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot) {
-  const Sectors sectors(scan);
+Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot,
+                             const VisibilityOptions& options) {
+  const auto tolerance = static_cast<float>(options.tolerance);
+  const auto nearest = static_cast<float>(options.nearest);
+  const auto farthest = static_cast<float>(options.farthest);
+  const auto min_facing = static_cast<float>(options.min_facing);
+  const Sectors sectors(scan, farthest);
   const SE2 T_laser_map = (T_map_robot * scan.T_robot_laser).Inverse();
   const Eigen::Matrix2f rotation = T_laser_map.rotation().cast<float>();
   const Eigen::Vector2f translation = T_laser_map.translation().cast<float>();
@@ -67,14 +69,14 @@ Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const S
   for (const Surfel& surfel : map.surfels()) {
     const Eigen::Vector2f p = rotation * surfel.position + translation;
     const float range = p.norm();
-    if (range < kNearest || range > kFarthest) continue;
-    // Seen at a steep angle only: a grazing beam passes a wall within the tolerance.
-    if ((rotation * surfel.normal).dot(p) > -0.3F * range) continue;
+    if (range < nearest || range > farthest) continue;
+    // A beam that grazes a wall passes it within the tolerance.
+    if ((rotation * surfel.normal).dot(p) > -min_facing * range) continue;
     const std::size_t sector = SectorOf(p);
     if (sectors.longest[sector] < 0.0F) continue;
-    if (sectors.shortest[sector] > range + kTolerance) {
+    if (sectors.shortest[sector] > range + tolerance) {
       ++visibility.denied;
-    } else if (sectors.longest[sector] > range - kTolerance) {
+    } else if (sectors.longest[sector] > range - tolerance) {
       ++visibility.confirmed;
     }
   }

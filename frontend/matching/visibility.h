@@ -2,6 +2,7 @@
 
 #include "backend/geometry/se2.h"
 #include "frontend/matching/local_map.h"
+#include "frontend/matching/matching_options.h"
 #include "frontend/matching/point_scan.h"
 
 namespace loopgrid {
@@ -16,7 +17,8 @@ struct Visibility {
 };
 
 /// Compares each surfel that faces the laser with the beams that go its way. A wrong place can put
-/// every hit on some wall and still look through others; this is where that shows.
-Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot);
+/// every hit on some wall and still look through other walls; then many surfels are denied.
+Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot,
+                             const VisibilityOptions& options = {});
 
 }  // namespace loopgrid

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -11,34 +10,22 @@
 #include "backend/base/error.h"
 #include "backend/base/stopwatch.h"
 #include "backend/solve/normal_equations.h"
-#include "frontend/closing/delayed_graph.h"
+#include "frontend/closing/node_queue.h"
 #include "frontend/matching/sensor_model.h"
+#include "frontend/slam/standstill.h"
+#include "frontend/slam/tracking_graph.h"
 #include "frontend/tracking/known_space.h"
+#include "frontend/tracking/odometry_noise.h"
+#include "frontend/tracking/pose_covariance.h"
 #include "frontend/tracking/scan_trail.h"
 #include "frontend/tracking/tracker.h"
 
 namespace loopgrid {
 namespace {
 
-constexpr int kTrackedNodes = 20;         // whose scans tracking matches with
-constexpr double kUnmatchedFactor = 4.0;  // of the odometry's covariance where a match failed
-
-// Scans nearer to each other than this are taken on one spot ...
-constexpr double kSpotDistance = 0.05;  // metres
-constexpr double kSpotAngle = 0.05;     // radians
-constexpr int kScansOnASpot = 10;       // ... and more of them add nothing to the map
-
-// Between two scans; no robot drives as far, so it was carried, or its odometry started anew.
-constexpr double kCarried = 10.0;            // metres
-constexpr double kFarthestCarried = 1000.0;  // metres; beyond, the odometry says nothing at all
-
-// Where the robot was carried, for want of anything better.
-SE2 CarriedMotion(const SE2& motion) {
-  return motion.translation().norm() <= kFarthestCarried ? motion : SE2();
-}
-
-Eigen::Matrix3d CarriedCovariance(const SE2& motion) {
-  const double sigma = 10.0 + motion.translation().norm();
+// Nearly nothing is known of where a robot was carried to.
+Eigen::Matrix3d CarriedCovariance(const SE2& motion, const CarriedOptions& options) {
+  const double sigma = options.distance + motion.translation().norm();
   return Eigen::Vector3d(sigma * sigma, sigma * sigma, 10.0).asDiagonal();
 }
 
@@ -47,47 +34,53 @@ Eigen::Matrix3d CarriedCovariance(const SE2& motion) {
 class Slam::Impl {
  public:
   explicit Impl(const SlamOptions& options)
-      : options_((options.Validate(), options)), graph_(options.threads > 1) {}
+      : options_((options.Validate(), options)),
+        sensor_(options.sensor),
+        tracker_(options.tracker),
+        queue_(options.threads > 1, options.closing),
+        graph_(options.update_lag),
+        standstill_(options.standstill) {}
 
+  // Section V-A of the tutorial, for one odometry measurement and laser scan.
   TrackedScan AddScan(const Observation& observation) {
-    if (!observation.T_odom_robot.coordinates().allFinite()) {
-      throw Error(ErrorCode::kInput,
-                  fmt::format("odometry of scan {} is not finite", scans_.size()));
-    }
     const bool is_first = scans_.size() == 0;
-    const SE2 motion =
-        is_first ? SE2() : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
-    const bool carried = observation.new_session || motion.translation().norm() > kCarried;
-    scans_.Add({.timestamp = observation.timestamp,
-                .T_odom_robot = observation.T_odom_robot,
-                .T_robot_laser = observation.scan.T_robot_laser,
-                .place = {},
-                .points = std::make_shared<const PointScan>(sensor_.Interpret(observation.scan))});
-    ++statistics_.scans;
-
+    const SE2 motion = Keep(observation);
     TrackedScan result;
     result.scan = scans_.size() - 1;
-    if (is_first || carried) {
-      BeginSession(CarriedMotion(motion), &result);
+    if (is_first || observation.new_session ||
+        motion.translation().norm() > options_.carried.distance) {
+      // The first node; or the robot was carried, and a new chain of nodes begins.
+      BeginSession(motion, &result);
     } else {
+      // The scan is matched with those of the latest nodes, to improve the odometry's estimate.
       Track(motion, &result);
-      if (HasMoved()) TakeStep(&result);
+      // Whenever the robot has moved half a metre or turned half a radian ...
+      if (HasMoved()) {
+        ++steps_;
+        is_known_ = is_known_ ? StaysKnown() : BecomesKnown();
+        if (is_known_) {
+          // ... in a part of the map that is known well enough, it goes on from an old node;
+          ReferTo(known_nodes_.front());
+        } else {
+          // ... elsewhere, the scan becomes a new node, and the match an edge that leads to it. The
+          // queue hands it to the NodePipeline: closures are sought with the old nodes whose 3
+          // sigma marginal covariance contains the robot, and with each the graph is optimised.
+          AddNode(EdgeFromReference(), &result);
+        }
+        // The result for a node is taken over a few steps later: it moves the nodes of the map.
+        TakeUpdates(&result);
+        SetTrackingMap();
+      }
     }
-    result.T_map_robot = T_map_robot();
-    result.covariance =
-        ComposeCovariances(graph_.covariance(reference_), T_reference_robot_, covariance_);
-    result.localized = graph_.localized();
-    scans_.back().place = {reference_, T_reference_robot_};
-    if (is_known_) ++statistics_.known_scans;
-    if (result.node < 0 && (is_known_ || IsOnTheSpot(result.T_map_robot))) {
-      scans_.back().points.reset();
-    }
+    Describe(&result);
     return result;
   }
 
   void Finish() {
     const ScopedTimer stopwatch(&statistics_.times.finishing);
-    graph_.Finish();
+    std::vector<ClosureId> ignored;
+    while (graph_.waiting() > 0) graph_.ApplyOldest(queue_.Take(), &ignored);
+    graph_.ApplyLast(queue_.Finish());
   }
 
   SlamStatistics Statistics() const {
@@ -104,36 +97,45 @@ class Slam::Impl {
   }
 
   const ScanTrail& scans() const { return scans_; }
-  const DelayedGraph& graph() const { return graph_; }
+  const TrackingGraph& graph() const { return graph_; }
 
  private:
   SE2 T_map_robot() const { return graph_.pose(reference_) * T_reference_robot_; }
 
-  // Whether the map has enough scans from here: a robot may be parked for hours.
-  bool IsOnTheSpot(const SE2& pose) {
-    const SE2 motion = spot_.Inverse() * pose;
-    if (motion.translation().norm() > kSpotDistance || std::abs(motion.theta()) > kSpotAngle) {
-      spot_ = pose;
-      scans_on_spot_ = 0;
+  // Keeps the scan as points. Returns the motion since the one before, by odometry.
+  SE2 Keep(const Observation& observation) {
+    if (!observation.T_odom_robot.coordinates().allFinite()) {
+      throw Error(ErrorCode::kInput,
+                  fmt::format("odometry of scan {} is not finite", scans_.size()));
     }
-    return ++scans_on_spot_ > kScansOnASpot;
+    const SE2 motion = scans_.size() == 0
+                           ? SE2()
+                           : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
+    scans_.Add({.timestamp = observation.timestamp,
+                .T_odom_robot = observation.T_odom_robot,
+                .T_robot_laser = observation.scan.T_robot_laser,
+                .place = {},
+                .points = std::make_shared<const PointScan>(sensor_.Interpret(observation.scan))});
+    ++statistics_.scans;
+    return motion;
   }
 
-  // The first node; or the robot may be anywhere now, and a new chain of nodes begins that is tied
-  // to the rest by what little is known.
-  void BeginSession(const SE2& motion, TrackedScan* result) {
+  // The robot may be anywhere now: the new chain of nodes is tied to the rest by what little the
+  // odometry says.
+  void BeginSession(SE2 motion, TrackedScan* result) {
     result->matched = true;
+    if (motion.translation().norm() > options_.carried.farthest) motion = SE2();
     NewNode node;
     if (graph_.size() > 0) {
       node.parent = reference_;
       node.T_parent_node = T_reference_robot_ * motion;
-      node.covariance = CarriedCovariance(motion);
-      node.gap = kFarthestCarried;
+      node.covariance = CarriedCovariance(motion, options_.carried);
+      node.gap = options_.carried.farthest;
       node.new_session = true;
     }
     is_known_ = false;
     tracked_.clear();
-    reference_scan_ = result->scan;  // no scan is on the way
+    reference_scan_ = result->scan;  // no scan was taken on the way
     AddNode(std::move(node), result);
     SetTrackingMap();
   }
@@ -149,17 +151,25 @@ class Slam::Impl {
     }
     T_reference_robot_ = graph_.pose(reference_).Inverse() * tracked.T_map_robot;
     inlier_share_ = tracked.matched ? tracked.inlier_share : 0.0;
-    covariance_ = CovarianceSinceReference(tracked);
+    UpdateCovariances(tracked);
     result->matched = tracked.matched;
   }
 
-  // Odometry since the reference node, fused with the match where there was one. In known space,
-  // where the robot came from elsewhere, the match alone.
-  Eigen::Matrix3d CovarianceSinceReference(const TrackedPose& tracked) const {
-    if (is_known_ && tracked.matched) return tracked.covariance;
-    const Eigen::Matrix3d odometry = OdometryNoise().Covariance(motion_since_reference_);
-    if (!tracked.matched) return kUnmatchedFactor * odometry;
-    return (odometry.inverse() + tracked.covariance.inverse()).inverse();
+  // The pose is where it was at the reference, moved on by odometry; where the scan was matched,
+  // fused with the match, which alone may leave a direction open (along a bare corridor).
+  void UpdateCovariances(const TrackedPose& tracked) {
+    Eigen::Matrix3d odometry =
+        OdometryCovariance(motion_since_reference_, options_.tracker.odometry);
+    if (!tracked.matched) odometry *= options_.unmatched_factor;
+    edge_covariance_ = tracked.matched ? FuseCovariances(odometry, tracked.covariance) : odometry;
+    pose_covariance_ = edge_covariance_;
+    if (!is_known_) return;
+    // In known space the robot came to its reference from elsewhere: an edge rests on the match
+    // alone, the pose also on what was known of it when it was first referred to this node.
+    if (tracked.matched) edge_covariance_ = tracked.covariance;
+    pose_covariance_ =
+        ComposeCovariances(covariance_at_reference_, motion_since_reference_, odometry);
+    if (tracked.matched) pose_covariance_ = FuseCovariances(pose_covariance_, tracked.covariance);
   }
 
   bool HasMoved() const {
@@ -167,36 +177,28 @@ class Slam::Impl {
            std::abs(T_reference_robot_.theta()) >= options_.node_angle;
   }
 
-  // The robot is far enough from its reference: a new node, or in known space an old one.
-  void TakeStep(TrackedScan* result) {
-    ++steps_;
-    is_known_ = is_known_ ? StaysKnown() : BecomesKnown();
-    if (is_known_) {
-      ReferTo(known_nodes_.front());
-    } else {
-      NewNode node;
-      node.parent = reference_;
-      node.T_parent_node = T_reference_robot_;
-      node.covariance = covariance_;
-      node.gap = travel_;
-      AddNode(std::move(node), result);
-    }
-    result->optimized = graph_.TakeDue(steps_, &result->closures);
-    SetTrackingMap();
+  NewNode EdgeFromReference() const {
+    NewNode node;
+    node.parent = reference_;
+    node.T_parent_node = T_reference_robot_;
+    node.covariance = edge_covariance_;
+    node.gap = travel_;
+    return node;
   }
 
   void AddNode(NewNode node, TrackedScan* result) {
     scans_.AddNode(node.parent, node.T_parent_node, reference_scan_);
     node.timestamp = scans_.back().timestamp;
     node.scan = scans_.back().points;
-    reference_ = graph_.Add(std::move(node), steps_);
+    reference_ = graph_.Add(node, steps_);
+    queue_.Submit(std::move(node));
     reference_scan_ = result->scan;
     T_reference_robot_ = SE2();
-    covariance_ = Eigen::Matrix3d::Zero();
+    edge_covariance_ = pose_covariance_ = covariance_at_reference_ = Eigen::Matrix3d::Zero();
     motion_since_reference_ = SE2();
     travel_ = 0.0;
     tracked_.push_back(reference_);
-    while (std::ssize(tracked_) > kTrackedNodes) tracked_.pop_front();
+    while (std::ssize(tracked_) > options_.tracked_nodes) tracked_.pop_front();
     result->node = reference_;
   }
 
@@ -206,15 +208,24 @@ class Slam::Impl {
     reference_ = node;
     reference_scan_ = scans_.size() - 1;
     motion_since_reference_ = SE2();
+    covariance_at_reference_ = pose_covariance_;
+  }
+
+  void TakeUpdates(TrackedScan* result) {
+    while (graph_.IsUpdateDue(steps_)) {
+      result->optimized |= graph_.ApplyOldest(queue_.Take(), &result->closures);
+    }
   }
 
   // Whether the robot is still where old nodes explain what it sees.
   bool StaysKnown() {
+    const KnownSpaceOptions& known = options_.known_space;
     const Eigen::Vector2d position = T_map_robot().translation();
-    const bool stays = inlier_share_ >= known_.min_inlier_share &&
-                       IsKnown(graph_.graph(), graph_.size(), graph_.session(), position, known_);
+    const bool stays =
+        inlier_share_ >= known.min_inlier_share &&
+        IsKnown(graph_.graph(), graph_.size(), graph_.session().first_node, position, known);
     if (stays) {
-      known_nodes_ = NearestNodes(graph_.graph(), graph_.size(), position, known_.map_nodes);
+      known_nodes_ = NearestNodes(graph_.graph(), graph_.size(), position, known.map_nodes);
     } else {
       tracked_.assign(known_nodes_.rbegin(), known_nodes_.rend());  // the nearest last
     }
@@ -223,27 +234,28 @@ class Slam::Impl {
 
   // Whether the robot has come to where old nodes explain what it sees, and the graph says so too.
   bool BecomesKnown() {
-    if (!graph_.localized() || graph_.size() - graph_.newest_closed() > known_.closed_within) {
+    const KnownSpaceOptions& known = options_.known_space;
+    if (!graph_.session().localized ||
+        graph_.size() - graph_.newest_closed() > known.closed_within) {
       return false;
     }
-    const int end = NodesBehind(graph_.graph(), graph_.session(), known_);
+    const int session = graph_.session().first_node;
+    const int end = NodesBehind(graph_.graph(), session, known);
     const SE2 expected = T_map_robot();
-    if (!IsKnown(graph_.graph(), end, graph_.session(), expected.translation(), known_)) {
-      return false;
-    }
+    if (!IsKnown(graph_.graph(), end, session, expected.translation(), known)) return false;
     const std::vector<int> nodes =
-        NearestNodes(graph_.graph(), end, expected.translation(), known_.map_nodes);
-    Tracker trial;
+        NearestNodes(graph_.graph(), end, expected.translation(), known.map_nodes);
+    Tracker trial(options_.tracker);
     trial.SetMap(Placed(nodes), expected);
     const TrackedPose tracked = trial.Track(*scans_.back().points, SE2());
     const SE2 shift = expected.Inverse() * tracked.T_map_robot;
-    if (!tracked.matched || tracked.inlier_share < known_.min_inlier_share ||
-        shift.translation().norm() > known_.max_shift ||
-        std::abs(shift.theta()) > known_.max_turn) {
+    if (!tracked.matched || tracked.inlier_share < known.min_inlier_share ||
+        shift.translation().norm() > known.max_shift || std::abs(shift.theta()) > known.max_turn) {
       return false;
     }
+    // The pose is known as well as before: the same scan, matched again, does not make it surer.
     T_reference_robot_ = graph_.pose(reference_).Inverse() * tracked.T_map_robot;
-    covariance_ = tracked.covariance;
+    edge_covariance_ = tracked.covariance;
     known_nodes_ = nodes;
     return true;
   }
@@ -260,24 +272,38 @@ class Slam::Impl {
     tracker_.SetMap(is_known_ ? Placed(known_nodes_) : Placed(tracked_), T_map_robot());
   }
 
+  // Says where the scan is, and forgets its points if the map does not need them.
+  void Describe(TrackedScan* result) {
+    result->T_map_robot = T_map_robot();
+    result->covariance =
+        ComposeCovariances(graph_.covariance(reference_), T_reference_robot_, pose_covariance_);
+    result->localized = graph_.session().localized;
+    scans_.back().place = {reference_, T_reference_robot_};
+    if (is_known_) ++statistics_.known_scans;
+    if (result->node < 0 && (is_known_ || standstill_.HasEnough(result->T_map_robot))) {
+      scans_.back().points.reset();
+    }
+  }
+
   SlamOptions options_;
-  KnownSpaceOptions known_;
   SensorModel sensor_;
   Tracker tracker_;
-  DelayedGraph graph_;
+  NodeQueue queue_;
+  TrackingGraph graph_;
   ScanTrail scans_;
+  Standstill standstill_;
   SlamStatistics statistics_;
 
   int reference_ = 0;  // the node that the robot's pose is relative to
   SE2 T_reference_robot_;
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of that, robot frame
-  int reference_scan_ = 0;                                // the first one with this reference
-  SE2 motion_since_reference_;                            // odometry
-  double travel_ = 0.0;                                   // since the last node, metres
-  SE2 spot_;                                              // where it was when it last moved
-  int scans_on_spot_ = 0;
-  double inlier_share_ = 0.0;  // of the latest match
-  std::int64_t steps_ = 0;
+  Eigen::Matrix3d edge_covariance_ = Eigen::Matrix3d::Zero();  // of that pose as a constraint
+  Eigen::Matrix3d pose_covariance_ = Eigen::Matrix3d::Zero();  // ... by all that is known of it
+  Eigen::Matrix3d covariance_at_reference_ = Eigen::Matrix3d::Zero();  // the latter at the start
+  int reference_scan_ = 0;      // the first one with this reference
+  SE2 motion_since_reference_;  // odometry
+  double travel_ = 0.0;         // since the last node, metres
+  double inlier_share_ = 0.0;   // of the latest match
+  std::int64_t steps_ = 0;      // of node_distance or node_angle
 
   std::deque<int> tracked_;  // nodes that make the tracking map
   bool is_known_ = false;
@@ -328,7 +354,7 @@ std::shared_ptr<const PointScan> Slam::scan_points(int scan) const {
 
 SE2 Slam::scan_laser(int scan) const { return impl_->scans()[scan].T_robot_laser; }
 
-const std::vector<ClosureRecord>& Slam::closures() const { return impl_->graph().closures(); }
+const std::vector<Closure>& Slam::closures() const { return impl_->graph().closures(); }
 
 std::vector<Eigen::Matrix3d> Slam::NodeCovariances() const {
   return impl_->graph().relative_covariances();

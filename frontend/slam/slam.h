@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "backend/graph/pose_graph.h"
-#include "frontend/closing/closure_record.h"
+#include "frontend/closing/closure.h"
 #include "frontend/log/observation/observation.h"
 #include "frontend/matching/point_scan.h"
 #include "frontend/slam/slam_options.h"
@@ -18,14 +18,16 @@ namespace loopgrid {
 struct TrackedScan {
   int scan = 0;     ///< its index, from 0
   SE2 T_map_robot;  ///< current best pose
-  /// Of that pose in the map, whose frame is that of the first node; robot frame, order
-  /// (x, y, theta).
+  /// Of that pose in the map, that is relative to the first node: the marginal covariance of the
+  /// node that the pose refers to, composed with what tracking knows of the way from there (the
+  /// odometry, fused with the match where there is one). Robot frame, order (x, y, theta), metres
+  /// and radians.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  bool matched = false;       ///< false: the match failed and odometry carried the pose
-  bool localized = true;      ///< false: a new session has not found itself in the old map yet
-  int node = -1;              ///< index of the node this scan became, -1 if none
-  bool optimized = false;     ///< poses of older scans have moved
-  std::vector<int> closures;  ///< records of closures() that are new or have changed
+  bool matched = false;    ///< false: the match failed and odometry carried the pose
+  bool localized = true;   ///< false: a new session has not found itself in the old map yet
+  int node = -1;           ///< index of the node this scan became, -1 if none
+  bool optimized = false;  ///< poses of older scans have moved
+  std::vector<ClosureId> closures;  ///< those of closures() that are new or have changed
 };
 
 /// Seconds spent in each stage.
@@ -56,13 +58,13 @@ class Slam {
   Slam(Slam&&) noexcept;
   Slam& operator=(Slam&&) noexcept;
 
-  /// Takes the next scan of the log, in order of acquisition. A range of infinity is a
-  /// beam without return, NaN and negative ones say nothing. Throws Error (kInput) if the odometry
+  /// Takes the next scan of the log, in order of acquisition. A range of infinity is a beam without
+  /// return; NaN and negative ranges are ignored. Throws Error (kInput) if the odometry
   /// is not finite; the scan is then not taken.
   TrackedScan AddScan(const Observation& observation);
 
-  /// Ends the run: links overlapping neighbours, optimises, refines. Call once, after the last
-  /// scan.
+  /// Ends the run: links neighbours whose scans overlap and optimises to convergence. Call once,
+  /// after the last scan.
   void Finish();
 
   /// Nodes and constraints. Poses are T_map_robot.
@@ -89,7 +91,7 @@ class Slam {
   std::shared_ptr<const PointScan> scan_points(int scan) const;
 
   /// Every closure tried so far, in order.
-  const std::vector<ClosureRecord>& closures() const;
+  const std::vector<Closure>& closures() const;
 
   /// As of the last optimisation: covariance of every node relative to the last one then: the
   /// diagonal blocks of the inverse of the reduced Hessian, in each node's own frame, order (x, y,

@@ -1,26 +1,33 @@
 #include "frontend/slam/slam_options.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "backend/base/error.h"
+#include "backend/base/option_check.h"
 
 namespace loopgrid {
-namespace {
 
-void RequireBetween(const char* field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("{} is {}, expected {} to {}", field, value, low, high));
+void StandstillOptions::Validate() const {
+  RequireBetween("distance", distance, 0.0, 100.0);
+  RequireBetween("angle", angle, 0.0, 3.14);
+  RequireBetween("max_scans", max_scans, 1, 1000000);
 }
 
-}  // namespace
+void CarriedOptions::Validate() const {
+  RequireBetween("distance", distance, 0.1, 1e6);
+  RequireBetween("farthest", farthest, 0.1, 1e6);
+}
 
 void SlamOptions::Validate() const {
   RequireBetween("node_distance", node_distance, 0.05, 10.0);
   RequireBetween("node_angle", node_angle, 0.05, 3.0);
+  RequireBetween("tracked_nodes", tracked_nodes, 1, 1000000);
+  RequireBetween("unmatched_factor", unmatched_factor, 1.0, 1e6);
+  RequireBetween("update_lag", update_lag, 0, 1000000);
   RequireBetween("threads", threads, 1, 1024);
+  sensor.Validate();
+  tracker.Validate();
+  known_space.Validate();
+  closing.Validate();
+  standstill.Validate();
+  carried.Validate();
 }
 
 }  // namespace loopgrid

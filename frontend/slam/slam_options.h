@@ -1,12 +1,47 @@
 #pragma once
 
+#include "frontend/closing/closing_options.h"
+#include "frontend/matching/matching_options.h"
+#include "frontend/tracking/tracking_options.h"
+
 namespace loopgrid {
 
-/// One set of defaults for all logs; what depends on the sensor is derived from the log.
+/// Where the robot stands still, all its scans are the same: more than a few add nothing to the
+/// map.
+struct StandstillOptions {
+  double distance = 0.05;  ///< scans this near are taken on one spot, metres ...
+  double angle = 0.05;     ///< ... if they are turned by no more than this, radians
+  int max_scans = 10;      ///< scans on one spot that are kept for the map
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
+/// A motion between two scans that no robot makes: it was carried, or its odometry began anew.
+struct CarriedOptions {
+  double distance = 10.0;    ///< longer motions are none, metres
+  double farthest = 1000.0;  ///< beyond, the odometry says nothing about the place, metres
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
+/// All options of the algorithm. One set of defaults for all logs; what depends on the sensor is
+/// derived from the log.
 struct SlamOptions {
-  double node_distance = 0.5;  ///< a new node after this much travel, metres
-  double node_angle = 0.5;     ///< ... or after this much turning, radians
+  double node_distance = 0.5;     ///< a new node after this much travel, metres
+  double node_angle = 0.5;        ///< ... or after this much turning, radians
+  int tracked_nodes = 20;         ///< the newest nodes, whose scans tracking matches with
+  double unmatched_factor = 4.0;  ///< of the odometry's covariance where a match failed
+  int update_lag = 5;             ///< steps of the robot from a new node to what it changes
   int threads = 2;  ///< 1: loops are closed in the calling thread; the result is the same
+
+  SensorModelOptions sensor;
+  TrackerOptions tracker;
+  KnownSpaceOptions known_space;
+  ClosingOptions closing;
+  StandstillOptions standstill;
+  CarriedOptions carried;
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

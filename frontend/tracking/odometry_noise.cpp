@@ -4,13 +4,13 @@
 
 namespace loopgrid {
 
-Eigen::Matrix3d OdometryNoise::Covariance(const SE2& motion) const {
+Eigen::Matrix3d OdometryCovariance(const SE2& motion, const OdometryNoise& noise) {
   const double metres = motion.translation().norm();
   const double radians = std::abs(motion.theta());
-  const double translation =
-      translation_floor + translation_per_metre * metres + translation_per_radian * radians;
-  const double rotation =
-      rotation_floor + rotation_per_metre * metres + rotation_per_radian * radians;
+  const double translation = noise.translation_floor + noise.translation_per_metre * metres +
+                             noise.translation_per_radian * radians;
+  const double rotation = noise.rotation_floor + noise.rotation_per_metre * metres +
+                          noise.rotation_per_radian * radians;
   return Eigen::Vector3d(translation * translation, translation * translation, rotation * rotation)
       .asDiagonal();
 }

@@ -35,16 +35,16 @@ class ScanTrail {
 
   void Add(ScanEntry scan) { scans_.push_back(std::move(scan)); }
 
-  /// Makes a node of the latest scan. The scans from `first_scan` on that belong to `parent` are on
-  /// the way from there, which tracking saw as `T_parent_node`.
+  /// Makes a node of the latest scan. The scans from `first_scan` on that belong to `parent` were
+  /// taken on the way from there to the new node; `T_parent_node` is that way as tracked.
   void AddNode(int parent, const SE2& T_parent_node, int first_scan);
 
   const PointScan* NodePoints(int node) const {
     return (*this)[node_scans_[static_cast<std::size_t>(node)]].points.get();
   }
 
-  /// Pose of a scan: beside its node, shifted in proportion to its share of the way by what `graph`
-  /// has changed between this node and the next.
+  /// Pose of a scan, from the pose of its node. What `graph` has changed between this node and the
+  /// next is distributed over the scans on the way, in proportion to their number.
   SE2 Pose(int scan, const PoseGraph<SE2>& graph) const;
 
  private:

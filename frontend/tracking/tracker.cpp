@@ -8,16 +8,12 @@
 
 #include "frontend/matching/match_covariance.h"
 #include "frontend/matching/thinning.h"
+#include "frontend/tracking/odometry_noise.h"
 
 namespace loopgrid {
 namespace {
 
-constexpr int kLevels = 4;               // of the likelihood table's pyramid
-constexpr double kWindowSigmas = 3.0;    // of the odometry, searched on either side
-constexpr double kWidestRotation = 0.6;  // radians
-constexpr double kPriorWeight = 0.02;    // 3 sigma off costs 9 % of a perfect score
-constexpr double kPeakDistance = 0.5;    // metres between two places ...
-constexpr double kPeakAngle = 0.3;       // ... or radians
+constexpr int kLevels = 4;  // of the likelihood table's pyramid
 
 std::vector<Eigen::Vector2f> Positions(const LocalMap& map) {
   std::vector<Eigen::Vector2f> positions;
@@ -33,7 +29,7 @@ void Tracker::SetMap(std::span<const PlacedScan> scans, const SE2& T_map_robot) 
   map_ = LocalMap(scans, T_map_robot.translation(), options_.map_radius);
   table_.reset();
   if (map_.empty()) return;
-  const SearchWindow widest{options_.lost_reach, options_.lost_reach, kWidestRotation};
+  const SearchWindow widest{options_.lost_reach, options_.lost_reach, options_.widest_rotation};
   const auto resolution = static_cast<float>(options_.table_resolution);
   const auto sigma = static_cast<float>(options_.table_sigma);
   const int margin = CorrelativeSearch::MarginFor(widest, resolution, kLevels) +
@@ -59,17 +55,20 @@ TrackedPose Tracker::Track(const PointScan& scan, const SE2& motion) {
 }
 
 TrackedPose Tracker::Match(const PointScan& scan, const SE2& predicted, const SE2& motion) const {
-  const Eigen::Matrix3d covariance = options_.odometry.Covariance(motion);
+  const Eigen::Matrix3d covariance = OdometryCovariance(motion, options_.odometry);
   const double sigma_translation = std::sqrt(covariance(0, 0));
   const double sigma_rotation = std::sqrt(covariance(2, 2));
-  const double reach = std::min(kWindowSigmas * sigma_translation + 0.05, options_.lost_reach);
-  const SearchWindow window{reach, reach,
-                            std::min(kWindowSigmas * sigma_rotation + 0.02, kWidestRotation)};
+  const double reach = std::min(options_.window_sigmas * sigma_translation + options_.window_margin,
+                                options_.lost_reach);
+  const double turn =
+      std::min(options_.window_sigmas * sigma_rotation + options_.window_angle_margin,
+               options_.widest_rotation);
+  const SearchWindow window{reach, reach, turn};
   const std::vector<Eigen::Vector2f> points =
       ThinPoints(scan.hits, static_cast<float>(options_.table_resolution));
   const CorrelativeSearch search(*table_, points, predicted, window,
                                  AngleStepFor(points, options_.table_resolution),
-                                 {sigma_translation, sigma_rotation, kPriorWeight});
+                                 {sigma_translation, sigma_rotation, options_.prior_weight});
   const SearchResult found = search.Best(0.0);
   if (!found.found || found.score < options_.min_score) {
     TrackedPose failed;
@@ -88,8 +87,9 @@ TrackedPose Tracker::MatchWithoutOdometry(const PointScan& scan, const SE2& pred
       {options_.lost_reach, options_.lost_reach, std::numbers::pi - angle_step}, angle_step);
   const SearchResult found = search.Best(options_.lost_min_score);
   if (!found.found) return {};
-  const int apart = static_cast<int>(std::ceil(kPeakDistance / options_.table_resolution));
-  const int turned = static_cast<int>(std::ceil(kPeakAngle / angle_step));
+  const int apart =
+      static_cast<int>(std::ceil(options_.lost_peak_distance / options_.table_resolution));
+  const int turned = static_cast<int>(std::ceil(options_.lost_peak_angle / angle_step));
   const double limit = options_.lost_max_second * found.score;
   if (search.BestAwayFrom(found.offset, apart, turned, limit).found) return {};
   return Refine(scan, points, found, {found.T_map_robot, Eigen::Matrix3d::Zero()},
@@ -105,7 +105,7 @@ TrackedPose Tracker::Refine(const PointScan& scan, std::span<const Eigen::Vector
   result.inlier_share = match.inlier_share;
   if (match.inlier_share < min_inlier_share) return result;
   result.T_map_robot = match.T_map_robot;
-  result.covariance = MatchCovariance(*table_, points, match);
+  result.covariance = MatchCovariance(*table_, points, match, options_.covariance);
   result.matched = true;
   return result;
 }

@@ -12,18 +12,18 @@
 
 namespace loopgrid {
 
-/// Makes observations out of the lines of a CARMEN log, in whatever portions they arrive: after
-/// each line, Next() gives out what is ready. The laser's mount is what PARAM lines state, else
-/// what the pairs of poses in the laser messages prove (see LaserMount), for which the first scans
-/// are held back until the robot has moved; else the robot's centre.
+/// Makes observations out of the lines of a CARMEN log as they arrive: after each line, Next()
+/// gives out what is ready. The laser's mount is what PARAM lines state. Without them it is found
+/// from the pairs of poses in the laser messages (see LaserMount), for which the first scans are
+/// held back until the robot has moved. If these do not tell, the laser is in the robot's centre.
 class CarmenDecoder {
  public:
   /// `name` is the log's, for messages about its lines.
   explicit CarmenDecoder(std::string name, const LogReaderOptions& options = {});
 
-  /// Takes the next line, without its end. In one that is not `terminated` the last field may have
-  /// been cut short; of one that is `too_long` there is nothing but the fact. Throws Error (kInput)
-  /// `name:line: ...` in strict mode, if the line is malformed.
+  /// Takes the next line, without its end. If it is not `terminated`, its last field may have been
+  /// cut short. If it is `too_long`, its text is not read and it counts as malformed. Throws Error
+  /// (kInput) `name:line: ...` in strict mode, if the line is malformed.
   void AddLine(std::string_view line, bool terminated = true, bool too_long = false);
 
   /// Takes note that the log broke off; `problem` begins with its name. Counts as malformed.
@@ -35,8 +35,8 @@ class CarmenDecoder {
   /// The next observation that is ready, in the order of the log; false if there is none (yet).
   bool Next(Observation* observation);
 
-  /// Number, from 1, of the line that the last observation from Next() stood in. How many lines
-  /// were taken so far, statistics() tells; it is more than that for scans that were held back.
+  /// Number, from 1, of the line that the last observation from Next() stood in. For scans that
+  /// were held back it is less than the number of lines taken so far, which statistics() has.
   std::int64_t observation_line() const { return observation_line_; }
 
   /// Whether there are scans that Next() has not given out yet.

@@ -10,7 +10,8 @@
 
 namespace loopgrid {
 
-/// The comment line that says: what follows was recorded later, the robot may have been carried.
+/// The comment line that begins a session: what follows was recorded later, and the robot may have
+/// been carried.
 inline constexpr std::string_view kNewSessionLine = "# loopgrid new-session";
 
 /// A line that broke off without its last field, which may have been cut short.

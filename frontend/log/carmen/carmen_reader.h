@@ -6,8 +6,8 @@
 
 namespace loopgrid {
 
-/// Reads CARMEN text logs as CarmenDecoder understands them. A file that breaks off or whose gzip
-/// data do gives all that comes before.
+/// Reads CARMEN text logs as CarmenDecoder understands them. If the file or its gzip data break
+/// off, all that comes before is given out.
 class CarmenReader : public LogReader {
  public:
   CarmenReader(LineReader lines, const LogReaderOptions& options);

@@ -7,21 +7,22 @@
 namespace loopgrid {
 
 /// Finds out where a laser sits on its robot from the two poses that CARMEN's laser messages carry.
-/// In a raw log one pose is the other times the mount, on every line. In a log that another mapper
-/// corrected, the laser's pose is that mapper's estimate, and their difference says nothing about
-/// the mount. The two look the same until the robot has driven and turned: only then is it decided.
+/// In a raw log the laser's pose is the robot's pose times the mount, in every message. In a log
+/// that another mapper corrected, the laser's pose is that mapper's estimate, and the difference of
+/// the two poses says nothing about the mount. Both kinds of log look the same until the robot has
+/// driven and turned, so the decision waits for that.
 class LaserMount {
  public:
-  /// `fallback` is the mount where the poses tell nothing.
+  /// `fallback` is the mount if the poses do not decide it.
   explicit LaserMount(const SE2& fallback) : T_robot_laser_(fallback) {}
 
   /// Takes the poses of the next message, until decided.
   void Add(const SE2& T_odom_laser, const SE2& T_odom_robot);
 
-  /// Settles for what is known so far.
+  /// Decides by what is known so far.
   void Decide();
 
-  /// Settles for a mount known from elsewhere.
+  /// Decides for a mount that is known from elsewhere.
   void Set(const SE2& T_robot_laser);
 
   bool decided() const { return decided_; }

@@ -24,8 +24,8 @@ struct LogReaderOptions {
   int max_reported_problems = 5;  ///< how many problems `first_problems` keeps
 };
 
-/// A log, read one observation after the other in constant memory. File order is the order of
-/// acquisition; time stamps are passed on, never sorted by.
+/// A log, read one observation after the other in constant memory. The order of the file is taken
+/// for the order of acquisition. Time stamps are passed on as they are; nothing is sorted by them.
 class LogReader {
  public:
   virtual ~LogReader() = default;

@@ -9,13 +9,13 @@ namespace loopgrid {
 /// The most readings a scan may have.
 inline constexpr int kMaxReadings = 1 << 14;
 
-/// Readers set what is beyond this many metres to it: no planar laser sees so far, so it can only
-/// mean "no return", and whatever is computed from it stays finite.
+/// Readers of logs replace longer readings by this one, metres. No planar laser sees so far, so
+/// that they can only mean "no return", and all that is computed from them stays finite.
 inline constexpr float kFarthestReading = 1e4F;
 
 /// One sweep of a planar laser as the log has it. There is at least one range, and all are finite
-/// and not negative; the readings that stand for "no return" are still in there (SensorModel tells
-/// them from walls).
+/// and not negative. Readings that stand for "no return" are among them; SensorModel tells them
+/// from walls.
 struct LaserScan {
   SE2 T_robot_laser;          ///< where the laser sits on the robot
   double first_angle = 0.0;   ///< of ranges[0] in the laser frame, radians

@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// Whether a pose from a file can be meant: finite, within ten thousand kilometres of the origin,
-/// and not turned so often that the angle has lost its digits. Metres and radians.
+/// Whether a pose from a file is plausible: finite, within ten thousand kilometres of the origin,
+/// and with an angle that is not too large to have digits left. Metres and radians.
 inline bool IsPlausiblePose(double x, double y, double theta) {
   constexpr double kFarthest = 1e7;
   constexpr double kMostTurned = 1e5;

@@ -50,7 +50,8 @@ class Archive : public mrpt::serialization::CArchive {
   RawlogStream* stream_;
 };
 
-/// MRPT's messages span many lines, with the call stack; what happened stands after "Message:".
+/// MRPT's messages have many lines, among them the call stack. The cause is the line after
+/// "Message:".
 std::string FirstMessage(const std::string& what) {
   constexpr std::string_view kLabel = "Message:";
   const std::size_t label = what.find(kLabel);
@@ -65,7 +66,7 @@ SE2 ToSE2(const mrpt::poses::CPose2D& pose) { return SE2(pose.x(), pose.y(), pos
 
 bool IsPlausible(const SE2& pose) { return IsPlausiblePose(pose.x(), pose.y(), pose.theta()); }
 
-/// A flag that MRPT copied from a file byte for byte: it may hold what no bool may.
+/// The value of a bool that MRPT copied from a file as a byte, which may be neither 0 nor 1.
 bool IsSet(const bool& flag) {
   unsigned char byte = 0;
   std::memcpy(&byte, &flag, 1);
@@ -175,7 +176,7 @@ bool RawlogReader::Impl::ReadObject() {
   } catch (const Error& error) {
     problem = error.what();
   } catch (const std::exception& error) {
-    // MRPT wraps what the stream threw into words of its own.
+    // MRPT adds text of its own to what the stream threw.
     problem = stream_.failure().empty() ? Where() + FirstMessage(error.what()) : stream_.failure();
   }
   if (!problem.empty()) {

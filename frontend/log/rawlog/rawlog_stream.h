@@ -12,11 +12,11 @@ namespace loopgrid {
 /// Whether a text can be the name of a class in a stream of MRPT objects.
 bool IsMrptClassName(std::string_view text);
 
-/// Feeds MRPT's reading of objects from an InputFile, and watches over it: MRPT trusts a file's
-/// every word, takes what was in memory for bytes that are missing, and falls over null pointers
-/// and allocations that fail. So a read here comes up with all its bytes or throws, and what passes
-/// by is followed well enough (the names of classes, and the two numbers that can do harm in the
-/// objects that rawlogs of planar lasers are made of) to refuse what MRPT would not survive.
+/// The stream that MRPT reads objects from, with checks. MRPT does not check a file: it goes on
+/// with whatever was in memory where bytes are missing, and crashes on null pointers and on
+/// allocations that fail. So a read here gives all the bytes asked for or throws. It also follows
+/// the names of classes and the two numbers that can do harm in the objects of planar laser
+/// rawlogs, and refuses values that would crash MRPT.
 class RawlogStream {
  public:
   /// `is_known` tells whether MRPT can make an object of a class.
@@ -28,7 +28,7 @@ class RawlogStream {
   InputFile& file() { return file_; }
   const InputFile& file() const { return file_; }
 
-  /// What the last Read() threw, for MRPT wraps it into words of its own; empty if nothing.
+  /// What the last Read() threw, without the text that MRPT adds to it; empty if nothing.
   const std::string& failure() const { return failure_; }
 
  private:

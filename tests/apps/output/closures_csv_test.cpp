@@ -16,7 +16,7 @@ TEST(ClosuresCsv, HasAHeaderEvenWithoutClosures) {
 }
 
 TEST(ClosuresCsv, HasOneLineForEveryClosureWithAllItsFields) {
-  ClosureRecord closure;
+  Closure closure;
   closure.from = 3;
   closure.to = 41;
   closure.timestamp = 976052857.375;
@@ -28,7 +28,7 @@ TEST(ClosuresCsv, HasOneLineForEveryClosureWithAllItsFields) {
   closure.covariance << 1e-4, 2e-5, 3e-6, 2e-5, 4e-4, 5e-6, 3e-6, 5e-6, 6e-4;
   closure.chi2 = 2.5;
   closure.outcome = ClosureOutcome::kAmbiguous;
-  std::istringstream lines(FormatClosuresCsv({ClosureRecord(), closure}));
+  std::istringstream lines(FormatClosuresCsv({Closure(), closure}));
   std::string header;
   std::string first;
   std::string second;

@@ -112,7 +112,7 @@ class BrowserTest : public testing::Test {
   }
 
   static OnlineUpdate WithClosure(OnlineUpdate update, int from, int to, ClosureOutcome outcome) {
-    ClosureRecord record;
+    Closure record;
     record.from = from;
     record.to = to;
     record.outcome = outcome;

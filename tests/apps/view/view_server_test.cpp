@@ -56,7 +56,7 @@ TEST_F(ViewServerTest, TellsViewersWhatHappens) {
   ASSERT_TRUE(viewer.WaitFor("\n\n"));
   ASSERT_TRUE(WaitUntil([this] { return server_.counters().viewers == 1; }));
   OnlineUpdate update = trip.UpdateWithNodes(6);
-  ClosureRecord record;
+  Closure record;
   record.outcome = ClosureOutcome::kAmbiguous;
   update.closures = {record};
   map_.Add(update);

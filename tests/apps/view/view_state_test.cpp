@@ -47,9 +47,9 @@ std::vector<json> Named(const std::string& name, const std::string& text) {
 
 json SnapshotOf(const ViewState& state) { return Named("state", state.Snapshot({})).at(0); }
 
-OnlineUpdate Closure(int from, int to, ClosureOutcome outcome) {
+OnlineUpdate UpdateWithClosure(int from, int to, ClosureOutcome outcome) {
   OnlineUpdate update;
-  ClosureRecord record;
+  Closure record;
   record.from = from;
   record.to = to;
   record.outcome = outcome;
@@ -146,8 +146,8 @@ TEST(ViewState, TurnsCovariancesIntoTheMapFrame) {
 
 TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
   ViewState state("a", 0.05);
-  state.Apply(Closure(3, 40, ClosureOutcome::kPending));
-  state.Apply(Closure(4, 41, ClosureOutcome::kLowScore));
+  state.Apply(UpdateWithClosure(3, 40, ClosureOutcome::kPending));
+  state.Apply(UpdateWithClosure(4, 41, ClosureOutcome::kLowScore));
   json closures = Named("closures", state.TakeChanges({}, true)).at(0)["closures"];
   ASSERT_EQ(closures.size(), 2u);
   EXPECT_EQ(closures[0]["outcome"], "pending");
@@ -156,7 +156,7 @@ TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
   EXPECT_EQ(closures[1]["reason"], "the scans do not fit well enough");
   const int id = closures[0]["id"];
 
-  state.Apply(Closure(3, 40, ClosureOutcome::kAccepted));
+  state.Apply(UpdateWithClosure(3, 40, ClosureOutcome::kAccepted));
   closures = Named("closures", state.TakeChanges({}, true)).at(0)["closures"];
   ASSERT_EQ(closures.size(), 1u);
   EXPECT_EQ(closures[0]["id"], id) << "still the same closure";
@@ -170,7 +170,7 @@ TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
 TEST(ViewState, NeverForgetsAcceptedClosuresButOldRefusedOnes) {
   ViewState state("a", 0.05);
   for (int i = 0; i < 1000; ++i) {
-    state.Apply(Closure(0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
+    state.Apply(UpdateWithClosure(0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
   }
   const json snapshot = SnapshotOf(state);
   EXPECT_EQ(snapshot["closures"].size(), 700u);
@@ -194,7 +194,7 @@ TEST(ViewState, TellsAtMostTheNewestPosesOfABatch) {
 TEST(ViewState, StaysJsonWhateverTheNumbers) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  OnlineUpdate update = Closure(1, 2, ClosureOutcome::kRejected);
+  OnlineUpdate update = UpdateWithClosure(1, 2, ClosureOutcome::kRejected);
   update.closures[0].score = nan;
   update.closures[0].distance_sigmas = infinity;
   update.tracked.covariance.setConstant(nan);

@@ -10,14 +10,23 @@
 
 #include "backend/solve/marginals.h"
 #include "tests/support/graphs.h"
+#include "tests/support/index.h"
 
 namespace loopgrid {
 namespace {
 
+using test_support::Index;
 using test_support::NoisyConstraint;
 using test_support::RandomGraph;
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+// Closures with the ids 100, 101, ...
+std::vector<ClosureConstraint> Numbered(const std::vector<Constraint<SE2>>& constraints) {
+  std::vector<ClosureConstraint> closures;
+  for (const Constraint<SE2>& c : constraints) {
+    closures.push_back({100 + static_cast<ClosureId>(closures.size()), c});
+  }
+  return closures;
+}
 
 // Where the nodes of RandomGraph(nodes, 0, seed) were before noise, but for its few per cent.
 void AddChain(const PoseGraph<SE2>& chain, int from, int to, ClosureGraph* graph) {
@@ -87,18 +96,18 @@ TEST(ClosureGraph, CovariancesAreTheBackendsAlongChainsAndClosures) {
     ClosureGraph graph;
     AddChain(chain, 0, 20, &graph);
     ExpectCovariancesAreTheBackends(graph);
-    ASSERT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 2, 19, seed)}));
+    ASSERT_TRUE(graph.TryClosures(Numbered({TrueClosure(chain, 2, 19, seed)})));
     ExpectCovariancesAreTheBackends(graph);
     AddChain(chain, 20, 45, &graph);
     ExpectCovariancesAreTheBackends(graph);
     ASSERT_TRUE(graph.TryClosures(
-        std::vector{TrueClosure(chain, 5, 44, seed), TrueClosure(chain, 40, 7, seed + 9)}));
+        Numbered({TrueClosure(chain, 5, 44, seed), TrueClosure(chain, 40, 7, seed + 9)})));
     ExpectCovariancesAreTheBackends(graph);
-    EXPECT_FALSE(graph.TryClosures(std::vector{FalseClosure(chain, 1, 43, seed)}));
+    EXPECT_FALSE(graph.TryClosures(Numbered({FalseClosure(chain, 1, 43, seed)})));
     ExpectCovariancesAreTheBackends(graph);
     AddChain(chain, 45, 60, &graph);
     ExpectCovariancesAreTheBackends(graph);
-    graph.Settle(std::vector{TrueClosure(chain, 10, 59, seed)});
+    graph.Settle(Numbered({TrueClosure(chain, 10, 59, seed)}));
     ExpectCovariancesAreTheBackends(graph);
   }
 }
@@ -110,10 +119,10 @@ TEST(ClosureGraph, KeepsARightClosureAndGoesByIt) {
   Constraint<SE2> closure = TrueClosure(chain, 3, 28, 11);
   closure.T_from_to = closure.T_from_to * SE2(0.02, -0.01, 0.005);
   const double before = graph.Chi2(closure);
-  ASSERT_TRUE(graph.TryClosures(std::vector{closure}));
+  ASSERT_TRUE(graph.TryClosures(Numbered({closure})));
   EXPECT_EQ(graph.graph().constraints.size(), 30U);
   EXPECT_LT(graph.Chi2(closure), 0.9 * before);
-  EXPECT_LE(graph.Chi2(closure), ClosureGraph::kMaxChi2);
+  EXPECT_LE(graph.Chi2(closure), ClosureGraphOptions().max_chi2);
 }
 
 TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
@@ -122,13 +131,13 @@ TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
     const PoseGraph<SE2> chain = Chain(40, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 40, &graph);
-    ASSERT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 4, 35, seed)}));
+    ASSERT_TRUE(graph.TryClosures(Numbered({TrueClosure(chain, 4, 35, seed)})));
     const PoseGraph<SE2> before = graph.graph();
-    EXPECT_FALSE(graph.TryClosures(std::vector{FalseClosure(chain, 2, 39, seed)}));
+    EXPECT_FALSE(graph.TryClosures(Numbered({FalseClosure(chain, 2, 39, seed)})));
     ExpectSamePoses(graph.graph().poses, before.poses);
     EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size());
     // It takes nothing with it.
-    EXPECT_TRUE(graph.TryClosures(std::vector{TrueClosure(chain, 6, 37, seed + 2)}));
+    EXPECT_TRUE(graph.TryClosures(Numbered({TrueClosure(chain, 6, 37, seed + 2)})));
     EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size() + 1);
   }
 }
@@ -139,13 +148,13 @@ TEST(ClosureGraph, OfThreeRightAndAWrongClosureKeepsTheRightOnes) {
     const PoseGraph<SE2> chain = Chain(40, seed);
     ClosureGraph graph;
     AddChain(chain, 0, 40, &graph);
-    std::vector<Constraint<SE2>> removed;
+    std::vector<ClosureId> removed;
     const std::vector<Constraint<SE2>> closures = {
         TrueClosure(chain, 5, 36, seed), FalseClosure(chain, 2, 39, seed),
         TrueClosure(chain, 7, 34, seed), TrueClosure(chain, 3, 37, seed)};
-    ASSERT_TRUE(graph.TryClosures(closures, &removed));
+    ASSERT_TRUE(graph.TryClosures(Numbered(closures), &removed));
     ASSERT_EQ(removed.size(), 1U);
-    EXPECT_EQ(removed[0].from, 2);
+    EXPECT_EQ(removed[0], 101);
     EXPECT_EQ(graph.graph().constraints.size(), 39U + 3U);
     ExpectCovariancesAreTheBackends(graph);
   }
@@ -158,16 +167,17 @@ TEST(ClosureGraph, AWrongClosureGivesWayToTheRightOnesThatComeLater) {
   AddChain(chain, 0, 40, &graph);
   Constraint<SE2> wrong = TrueClosure(chain, 3, 30, 31);
   wrong.T_from_to = wrong.T_from_to * SE2(0.6, 0.4, 0.1);
-  ASSERT_TRUE(graph.TryClosures(std::vector{wrong}));
+  constexpr ClosureId kWrong = 7;
+  ASSERT_TRUE(graph.TryClosures(std::vector{ClosureConstraint{kWrong, wrong}}));
   std::vector<Constraint<SE2>> right;
   for (int i = 0; i < 4; ++i) {
     right.push_back(TrueClosure(chain, i + 1, 29 + i, 31));
     right.back().information *= 100.0;
   }
-  std::vector<Constraint<SE2>> removed;
-  ASSERT_TRUE(graph.TryClosures(right, &removed));
+  std::vector<ClosureId> removed;
+  ASSERT_TRUE(graph.TryClosures(Numbered(right), &removed));
   ASSERT_EQ(removed.size(), 1U);
-  EXPECT_EQ(removed[0].from, wrong.from);
+  EXPECT_EQ(removed[0], kWrong);
   EXPECT_EQ(graph.graph().constraints.size(), 39U + 4U);
   ExpectCovariancesAreTheBackends(graph);
 }
@@ -181,9 +191,12 @@ TEST(ClosureGraph, SettleTakesOutThePlantedOutlierAmongGoodLinks) {
     std::vector<Constraint<SE2>> links;
     for (int i = 0; i < 20; ++i) links.push_back(TrueClosure(chain, i, 49 - i, seed));
     links[7] = FalseClosure(chain, 7, 42, seed);
-    const std::vector<Constraint<SE2>> removed = graph.Settle(links);
-    EXPECT_TRUE(std::any_of(removed.begin(), removed.end(),
-                            [](const Constraint<SE2>& c) { return c.from == 7 && c.to == 42; }));
+    const std::vector<ClosureId> removed = graph.Settle(Numbered(links));
+    EXPECT_EQ(std::count(removed.begin(), removed.end(), 107), 1);
+    for (const ClosureConstraint& kept : graph.Closures()) {
+      EXPECT_EQ(std::count(removed.begin(), removed.end(), kept.id), 0);
+      EXPECT_EQ(kept.constraint.from, kept.id - 100);  // ids stay with their constraints
+    }
     EXPECT_LE(removed.size(), 5U);  // it may take some that it pulled hard with it
     EXPECT_EQ(graph.graph().constraints.size(), 49U + 20U - removed.size());
     for (int i = 0; i < 50; ++i) {

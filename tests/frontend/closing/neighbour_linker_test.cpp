@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "tests/frontend/slam/walk.h"
+#include "tests/support/index.h"
 
 namespace loopgrid {
 namespace {
 
 using test_support::DistinctiveRoom;
+using test_support::Index;
 using test_support::kNodesARound;
 using test_support::RoundWalk;
 using test_support::Walk;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 TEST(LinkNeighbours, JoinsThePassesByOnePlaceWhereTheyReallyAre) {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
@@ -55,11 +55,12 @@ TEST(LinkNeighbours, SparesNodesThatHaveAClosureNearby) {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
   Walk walk;
   walk.Follow(DistinctiveRoom(), truth);
-  std::vector<Constraint<SE2>> closures;
+  std::vector<ClosureConstraint> closures;
   for (int i = 0; i < kNodesARound; ++i) {
     const int again = i + kNodesARound;
-    closures.push_back({i, again, truth[Index(i)].Inverse() * truth[Index(again)],
-                        1e4 * Eigen::Matrix3d::Identity(), true});
+    closures.push_back({i,
+                        {i, again, truth[Index(i)].Inverse() * truth[Index(again)],
+                         1e4 * Eigen::Matrix3d::Identity(), true}});
   }
   const std::size_t without = LinkNeighbours(walk.nodes()).size();
   ASSERT_TRUE(walk.graph().TryClosures(closures));

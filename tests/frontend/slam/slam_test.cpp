@@ -7,13 +7,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "backend/base/error.h"
 #include "frontend/evaluation/trajectory_error.h"
+#include "tests/support/index.h"
 #include "tests/support/office_world.h"
 #include "tests/support/rooms.h"
 
@@ -21,9 +19,8 @@ namespace loopgrid {
 namespace {
 
 using test_support::DistinctiveRoom;
+using test_support::Index;
 using test_support::SimulatedRun;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 // Twice round the distinctive room.
 SimulatedRun RoomRun() {
@@ -93,7 +90,7 @@ TEST(Slam, FollowsADriveThroughAnOfficeAndClosesItsLoops) {
 
   // Closures: some accepted, none of those wrong, and each of them in the graph.
   int accepted = 0;
-  for (const ClosureRecord& record : slam.closures()) {
+  for (const Closure& record : slam.closures()) {
     if (record.outcome != ClosureOutcome::kAccepted) continue;
     ++accepted;
     const SE2& from = run.true_poses[Index(slam.node_scans()[Index(record.from)])];
@@ -106,7 +103,7 @@ TEST(Slam, FollowsADriveThroughAnOfficeAndClosesItsLoops) {
     }));
   }
   EXPECT_GE(accepted, 10);
-  for (const ClosureRecord& record : slam.closures()) {
+  for (const Closure& record : slam.closures()) {
     EXPECT_NE(record.outcome, ClosureOutcome::kPending);
   }
 
@@ -267,39 +264,6 @@ TEST(Slam, IsTheSameObjectAfterAMove) {
     assigned.AddScan(run.observations[i]);
   }
   ExpectSameBits(straight, assigned);
-}
-
-TEST(SlamOptions, NamesTheFieldThatIsOutOfRange) {
-  const auto expect_refused = [](SlamOptions options, const char* field) {
-    try {
-      Slam slam(options);
-      ADD_FAILURE() << field;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::kUsage);
-      EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
-    }
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (double value : {0.0, -1.0, 0.049, 10.01, 1e300, nan}) {
-    SlamOptions options;
-    options.node_distance = value;
-    expect_refused(options, "node_distance");
-  }
-  for (double value : {0.0, -0.5, 0.049, 3.01, nan}) {
-    SlamOptions options;
-    options.node_angle = value;
-    expect_refused(options, "node_angle");
-  }
-  for (int value : {0, -1, 1025}) {
-    SlamOptions options;
-    options.threads = value;
-    expect_refused(options, "threads");
-  }
-  for (double value : {0.05, 3.0}) {
-    SlamOptions options;
-    options.node_distance = options.node_angle = value;
-    EXPECT_NO_THROW(options.Validate());
-  }
 }
 
 }  // namespace

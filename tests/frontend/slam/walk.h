@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/closing/closure_graph.h"
-#include "frontend/closing/loop_closing.h"
+#include "frontend/closing/graph_update.h"
 #include "frontend/closing/nodes.h"
 #include "tests/support/rooms.h"
 

@@ -1,4 +1,4 @@
-#include "frontend/closing/closing_queue.h"
+#include "frontend/closing/node_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -14,13 +14,12 @@ namespace {
 
 using test_support::RoundNodes;
 
-void ExpectSameNews(const ClosingNews& a, const ClosingNews& b) {
-  ASSERT_EQ(a.records.size(), b.records.size());
-  for (std::size_t i = 0; i < a.records.size(); ++i) {
-    EXPECT_EQ(a.records[i].first, b.records[i].first);
-    EXPECT_EQ(a.records[i].second.outcome, b.records[i].second.outcome);
-    EXPECT_EQ(a.records[i].second.T_from_to.coordinates(),
-              b.records[i].second.T_from_to.coordinates());
+void ExpectSameUpdates(const GraphUpdate& a, const GraphUpdate& b) {
+  ASSERT_EQ(a.closures.size(), b.closures.size());
+  for (std::size_t i = 0; i < a.closures.size(); ++i) {
+    EXPECT_EQ(a.closures[i].id, b.closures[i].id);
+    EXPECT_EQ(a.closures[i].outcome, b.closures[i].outcome);
+    EXPECT_EQ(a.closures[i].T_from_to.coordinates(), b.closures[i].T_from_to.coordinates());
   }
   EXPECT_EQ(a.localized, b.localized);
   ASSERT_EQ(a.optimized.has_value(), b.optimized.has_value());
@@ -33,41 +32,41 @@ void ExpectSameNews(const ClosingNews& a, const ClosingNews& b) {
   EXPECT_EQ(a.optimized->map_covariances, b.optimized->map_covariances);
 }
 
-TEST(ClosingQueue, GivesTheSameNewsWithAndWithoutAThreadHoweverLateTheyAreTaken) {
+TEST(NodeQueue, GivesTheSameUpdatesWithAndWithoutAThreadHoweverLateTheyAreTaken) {
   const std::vector<NewNode> nodes = RoundNodes();
-  LoopClosing reference;
-  ClosingQueue threaded(true);
-  ClosingQueue deferred(false);
-  std::vector<ClosingNews> expected;
+  NodePipeline reference;
+  NodeQueue threaded(true);
+  NodeQueue deferred(false);
+  std::vector<GraphUpdate> expected;
   for (const NewNode& node : nodes) {
     expected.push_back(reference.Add(node));
     threaded.Submit(node);
     deferred.Submit(node);
     if (threaded.size() < 7) continue;
-    const ClosingNews& oldest = expected[expected.size() - 7];
-    ExpectSameNews(threaded.Take(), oldest);
-    ExpectSameNews(deferred.Take(), oldest);
+    const GraphUpdate& oldest = expected[expected.size() - 7];
+    ExpectSameUpdates(threaded.Take(), oldest);
+    ExpectSameUpdates(deferred.Take(), oldest);
   }
   EXPECT_EQ(threaded.size(), 6);
   while (threaded.size() > 0) {
-    const ClosingNews& oldest =
+    const GraphUpdate& oldest =
         expected[expected.size() - static_cast<std::size_t>(threaded.size())];
-    ExpectSameNews(threaded.Take(), oldest);
-    ExpectSameNews(deferred.Take(), oldest);
+    ExpectSameUpdates(threaded.Take(), oldest);
+    ExpectSameUpdates(deferred.Take(), oldest);
   }
-  const ClosingNews last = reference.Finish();
+  const GraphUpdate last = reference.Finish();
   ASSERT_TRUE(last.optimized);
-  ExpectSameNews(threaded.Finish(), last);
-  ExpectSameNews(deferred.Finish(), last);
+  ExpectSameUpdates(threaded.Finish(), last);
+  ExpectSameUpdates(deferred.Finish(), last);
   // There was something to compare.
   EXPECT_TRUE(std::any_of(expected.begin(), expected.end(),
-                          [](const ClosingNews& news) { return news.optimized.has_value(); }));
+                          [](const GraphUpdate& update) { return update.optimized.has_value(); }));
 }
 
-TEST(ClosingQueue, EndsWithWorkLeftOver) {
+TEST(NodeQueue, EndsWithWorkLeftOver) {
   const std::vector<NewNode> nodes = RoundNodes();
   for (bool threaded : {true, false}) {
-    ClosingQueue queue(threaded);
+    NodeQueue queue(threaded);
     for (const NewNode& node : nodes) queue.Submit(node);
     EXPECT_EQ(queue.size(), static_cast<int>(nodes.size()));
   }

@@ -1,4 +1,4 @@
-#include "frontend/closing/closure_record.h"
+#include "frontend/closing/closure.h"
 
 namespace loopgrid {
 

@@ -6,6 +6,11 @@
 
 namespace loopgrid {
 
+/// Names a closure: its place in the list of all closures tried, from 0. Goes with the closure's
+/// constraint through the graph.
+using ClosureId = int;
+inline constexpr ClosureId kNoClosure = -1;  ///< of constraints that are no closures
+
 /// What became of an attempt to close a loop.
 enum class ClosureOutcome {
   kPending,        ///< matched, waiting for others to agree with it
@@ -24,14 +29,15 @@ const char* ToString(ClosureOutcome outcome);
 /// The reason in plain words, for whoever watches.
 const char* Explain(ClosureOutcome outcome);
 
-/// One closure tried: the audit trail.
-struct ClosureRecord {
+/// One attempt to close a loop: the scan of a new node, matched with the map around an old node.
+struct Closure {
+  ClosureId id = kNoClosure;
   int from = 0;            ///< the old node
   int to = 0;              ///< the newer node, the one whose scan was matched
-  double timestamp = 0.0;  ///< of the newer node's scan
+  double timestamp = 0.0;  ///< of the newer node's scan, seconds
   double distance_sigmas =
-      0.0;                    ///< of the old node from the pose before the match, see gate_sigmas
-  double score = 0.0;         ///< match score, 0..1; 0 where none came near the least one
+      0.0;             ///< of the old node from the pose before the match, see ClosureCandidate
+  double score = 0.0;  ///< match score, 0..1; 0 where no place came near the least score
   double second_score = 0.0;  ///< best score of a separate peak, 0..1; 0 where none is near
   double inlier_share = 0.0;  ///< of the scan's hits, those near a surface, 0..1
   double denied_share = 0.0;  ///< of the walls in view, those that beams would have gone through
@@ -40,5 +46,7 @@ struct ClosureRecord {
   double chi2 = 0.0;  ///< of the constraint after optimisation, where it got that far
   ClosureOutcome outcome = ClosureOutcome::kPending;
 };
+
+using ClosureRecord = Closure;
 
 }  // namespace loopgrid
