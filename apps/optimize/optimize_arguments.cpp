@@ -102,8 +102,10 @@ void AddOptimize(CLI::App* program, OptimizeOptions* options) {
   AddOutputs(optimize, options);
   AddSolver(optimize, options);
   AddLosses(optimize, options);
-  optimize->add_flag("--lenient", options->lenient,
-                     "Pass over lines with an unknown tag [default: refuse the file]");
+  optimize->add_flag(
+      "--lenient", options->lenient,
+      "Pass over lines with an unknown tag, and set negative eigenvalues of information\n"
+      "matrices to zero [default: refuse the file]");
   optimize->add_flag("--json", options->json, "Print JSON [default: text]");
   optimize->add_flag("--quiet", options->quiet,
                      "Do not show what is going on [default: if standard error is a terminal]");

@@ -56,7 +56,7 @@ struct OptimizeOptions {
   /// Share of F; less than what matters, so that results can be compared digit by digit.
   double tolerance = 1e-10;
   int threads = AllCores();
-  bool lenient = false;  ///< pass over lines with an unknown tag
+  bool lenient = false;  ///< as in GraphReadOptions
   bool json = false;     ///< print JSON instead of text
   bool quiet = false;    ///< do not show what is going on
 

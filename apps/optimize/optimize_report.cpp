@@ -102,10 +102,14 @@ Json GraphJson(const OptimizeReport& report) {
           {"fixed_in_file", report.fixed},
           {"degrees_of_freedom", report.degrees_of_freedom},
           {"notes",
-           {{"unknown_tags", notes.unknown_tags.count},
+           {{"data_lines", notes.data_lines.count},
+            {"unknown_tags", notes.unknown_tags.count},
+            {"indefinite_information", notes.indefinite_information.count},
             {"normalized_quaternions", notes.normalized_quaternions.count},
             {"guessed_nodes", notes.guessed_nodes},
+            {"first_data_lines", notes.data_lines.messages},
             {"first_unknown_tags", notes.unknown_tags.messages},
+            {"first_indefinite_information", notes.indefinite_information.messages},
             {"first_normalized_quaternions", notes.normalized_quaternions.messages}}}};
 }
 
@@ -150,13 +154,20 @@ void AddGraph(const OptimizeReport& report, Lines* lines) {
 
 void AddNotes(const OptimizeReport& report, Lines* lines) {
   const GraphNotes& notes = report.notes;
-  const auto add = [lines](const GraphNotes::Kind& kind, const char* what) {
+  const auto add = [lines](const GraphNotes::Kind& kind, const char* one, const char* many) {
     if (kind.count == 0) return;
-    lines->Add("note", "{} {}, the first:", kind.count, what);
+    lines->Add("note", "{} {}, the first:", kind.count, kind.count == 1 ? one : many);
     for (const std::string& message : kind.messages) lines->Add("", "{}", message);
   };
-  add(notes.unknown_tags, "lines with an unknown tag were passed over");
-  add(notes.normalized_quaternions, "quaternions were not of length 1 and have been normalised");
+  add(notes.data_lines, "line with data that are no part of the graph was passed over",
+      "lines with data that are no part of the graph were passed over");
+  add(notes.unknown_tags, "line with an unknown tag was passed over",
+      "lines with an unknown tag were passed over");
+  add(notes.indefinite_information,
+      "information matrix was replaced by the nearest that is positive semi-definite",
+      "information matrices were replaced by the nearest that are positive semi-definite");
+  add(notes.normalized_quaternions, "quaternion was not of length 1 and has been normalised",
+      "quaternions were not of length 1 and have been normalised");
   if (notes.guessed_nodes > 0) {
     lines->Add("note", "{} got their poses from a spanning tree: the file has edges only",
                Counted(static_cast<std::size_t>(notes.guessed_nodes), "node"));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <type_traits>
@@ -57,7 +58,7 @@ void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
   constraint.T_from_to = ReadPose<Pose>(line);
   constraint.information = line->UpperTriangle<Pose::kDof>();
   line->End();
-  line->RequireInformation(constraint.information);
+  line->RequireInformation(from, to, &constraint.information);
   builder->AddConstraint({from, to, line->number()}, constraint);
 }
 
@@ -85,12 +86,17 @@ void ReadObservation(GraphLine* line, GraphBuilder<Pose>* builder) {
   if constexpr (kHasSensor) T_node_sensor = builder->Sensor({line->Id(), line->number()});
   LandmarkObservation<Pose> observation;
   observation.p_node = T_node_sensor * line->Numbers<kPointSize<Pose>>();
-  const auto information = line->UpperTriangle<kPointSize<Pose>>();
+  auto information = line->UpperTriangle<kPointSize<Pose>>();
   line->End();
   if (!observation.p_node.allFinite()) throw line->ErrorHere("the landmark is too far away");
-  const auto R = T_node_sensor.rotation();
-  observation.information = R * information * R.transpose();
-  line->RequireInformation(observation.information);
+  line->RequireInformation(node, landmark, &information);
+  if constexpr (kHasSensor) {
+    const Eigen::Matrix3d R = T_node_sensor.rotation();
+    const Eigen::Matrix3d turned = R * information * R.transpose();
+    information = 0.5 * (turned + turned.transpose());
+    if (!information.allFinite()) throw line->ErrorHere("the information matrix is too large");
+  }
+  observation.information = information;
   builder->AddObservation({node, landmark, line->number()}, observation);
 }
 
@@ -140,6 +146,12 @@ std::span<const GraphTag<SE2>> G2oTags<SE2>() {
 template <>
 std::span<const GraphTag<SE3>> G2oTags<SE3>() {
   return kTags3;
+}
+
+bool IsG2oData(std::string_view tag) {
+  constexpr std::array<std::string_view, 4> kData = {"ROBOTLASER1", "RAWLASER1", "VERTEX_TAG",
+                                                     "VERTEX_ELLIPSE"};
+  return tag.starts_with("PARAMS_") || std::find(kData.begin(), kData.end(), tag) != kData.end();
 }
 
 template <typename Pose>

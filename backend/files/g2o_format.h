@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "backend/files/graph_tag.h"
 
@@ -19,6 +20,12 @@ namespace loopgrid {
 /// What a sensor has seen is taken into the node's frame; it is written as seen from there.
 template <typename Pose>
 std::span<const GraphTag<Pose>> G2oTags();
+
+/// Whether a line with this tag carries what g2o keeps beside the graph: what a laser has measured
+/// at a vertex (ROBOTLASER1, RAWLASER1), a label or an ellipse to draw there (VERTEX_TAG,
+/// VERTEX_ELLIPSE), a parameter (PARAMS_...; those that edges in G2oTags() refer to are read). It
+/// says nothing about where the poses are.
+bool IsG2oData(std::string_view tag);
 
 template <typename Pose>
 std::string FormatG2o(const PoseGraph<Pose>& graph, const GraphIds& ids);

@@ -40,7 +40,7 @@ AnyGraphFile GraphReader::Read() {
   std::string_view text;
   while (lines_.Next(&text)) {
     if (lines_.too_long()) throw lines_.ErrorHere("the line is too long for a graph file");
-    GraphLine line(lines_, text, notes_);
+    GraphLine line(lines_, text, options_, notes_);
     if (line.tag().empty() || line.tag().front() == '#') continue;
     const bool known =
         ReadAs(&line, &planar_, spatial_) || ReadAs(&line, &spatial_, planar_) || ReadFix(&line);
@@ -87,6 +87,10 @@ bool GraphReader::ReadFix(GraphLine* line) {
 }
 
 void GraphReader::PassOver(const GraphLine& line) {
+  if (IsG2oData(line.tag())) {
+    line.Note(&notes_->data_lines, Quoted(line.tag()) + " is no part of the graph, passed over");
+    return;
+  }
   const std::string problem = "unknown tag " + Quoted(line.tag());
   if (!options_.lenient) throw line.ErrorHere(problem + ", expected one of g2o or TORO");
   line.Note(&notes_->unknown_tags, problem + ", passed over");

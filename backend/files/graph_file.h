@@ -28,7 +28,9 @@ struct GraphFile {
 using AnyGraphFile = std::variant<GraphFile<SE2>, GraphFile<SE3>>;
 
 struct GraphReadOptions {
-  bool lenient = false;  ///< pass over lines with an unknown tag instead of refusing the file
+  /// Instead of refusing the file, pass over lines with an unknown tag, and replace an information
+  /// matrix that has negative eigenvalues by the nearest one that has not.
+  bool lenient = false;
 };
 
 /// What was accepted but deserves a word.
@@ -39,7 +41,9 @@ struct GraphNotes {
     std::int64_t count = 0;
     std::vector<std::string> messages;  ///< the first few, beginning `file:line: `
   };
-  Kind unknown_tags;               ///< lines passed over
+  Kind data_lines;                 ///< what g2o keeps beside the graph (IsG2oData), passed over
+  Kind unknown_tags;               ///< lines passed over in lenient reading
+  Kind indefinite_information;     ///< matrices replaced in lenient reading
   Kind normalized_quaternions;     ///< whose length is not 1, even up to six digits
   std::int64_t guessed_nodes = 0;  ///< the file has edges only: poses from a spanning tree
 };
@@ -47,11 +51,12 @@ struct GraphNotes {
 /// Reads a graph file, g2o or TORO, 2D or 3D as its tags say, plain or gzipped: lines in any order;
 /// empty lines and lines that begin with # are passed over. Nodes and landmarks are numbered in the
 /// order of the file; in a file without vertices in the order of their ids, and the first guess is
-/// a spanning tree's. Tags and fields: g2o_format.h, toro_format.h; `FIX id ...` in both.
+/// a spanning tree's. Tags and fields: g2o_format.h, toro_format.h; `FIX id ...` in both. Lines of
+/// data that g2o keeps beside the graph are passed over.
 /// Throws Error (kInput) beginning `file:line: ` at a line that is not understood, is malformed or
 /// cut, holds a number that is not finite, a quaternion of length zero or an information matrix
-/// that is not positive semi-definite, names a vertex twice or one that the file does not have,
-/// fixes a landmark, or is 3D in a 2D file or the other way round.
+/// that is not positive semi-definite (see kInformationRounding), names a vertex twice or one that
+/// the file does not have, fixes a landmark, or is 3D in a 2D file or the other way round.
 AnyGraphFile ReadGraph(const std::string& path, const GraphReadOptions& options = {},
                        GraphNotes* notes = nullptr);
 

@@ -2,29 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cstddef>
+#include <optional>
+
+#include "backend/graph/information.h"
 
 namespace loopgrid {
-namespace {
-
-/// Up to rounding in the file: eigenvalues may be below zero by this share of the largest.
-constexpr double kIndefiniteTolerance = 1e-9;
-
-template <int kSize>
-bool IsPositiveSemidefinite(const Eigen::Matrix<double, kSize, kSize>& matrix) {
-  if ((matrix.diagonal().array() < 0.0).any()) return false;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
-  const Eigen::LLT<Matrix> factor(matrix);  // definite in most files, and far faster
-  if (factor.info() == Eigen::Success && factor.matrixLLT().allFinite()) return true;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(matrix, Eigen::EigenvaluesOnly);
-  const auto& values = solver.eigenvalues();  // ascending
-  return values[0] >= -kIndefiniteTolerance * values[kSize - 1];
-}
-
-}  // namespace
 
 std::int64_t GraphLine::Id() {
   std::int64_t id = 0;
@@ -40,15 +23,26 @@ void GraphLine::End() {
 }
 
 template <int kSize>
-void GraphLine::RequireInformation(const Eigen::Matrix<double, kSize, kSize>& matrix) const {
-  if (!matrix.allFinite()) throw ErrorHere("the information matrix is not finite");
-  if (IsPositiveSemidefinite(matrix)) return;
-  throw ErrorHere("the information matrix is not positive semi-definite");
+void GraphLine::RequireInformation(std::int64_t from, std::int64_t to,
+                                   Eigen::Matrix<double, kSize, kSize>* matrix) const {
+  const auto is = [from, to](const std::string& what) {
+    return fmt::format("the information matrix between {} and {} is {}", from, to, what);
+  };
+  if (!matrix->allFinite()) throw ErrorHere(is("not finite"));
+  if (const std::optional<double> eigenvalue = NegativeEigenvalue(*matrix)) {
+    const std::string problem = is(
+        fmt::format("not positive semi-definite: its smallest eigenvalue is {:.6g}", *eigenvalue));
+    if (!options_.lenient) throw ErrorHere(problem);
+    Note(&notes_->indefinite_information, problem + "; negative ones set to zero");
+  }
+  *matrix = NearestSemidefinite(*matrix);
+  if (!matrix->allFinite()) throw ErrorHere(is("too large"));
 }
 
-template void GraphLine::RequireInformation<2>(const Eigen::Matrix<double, 2, 2>&) const;
-template void GraphLine::RequireInformation<3>(const Eigen::Matrix<double, 3, 3>&) const;
-template void GraphLine::RequireInformation<6>(const Eigen::Matrix<double, 6, 6>&) const;
+template void GraphLine::RequireInformation<2>(std::int64_t, std::int64_t, Eigen::Matrix2d*) const;
+template void GraphLine::RequireInformation<3>(std::int64_t, std::int64_t, Eigen::Matrix3d*) const;
+template void GraphLine::RequireInformation<6>(std::int64_t, std::int64_t,
+                                               Eigen::Matrix<double, 6, 6>*) const;
 
 void GraphLine::Note(GraphNotes::Kind* kind, const std::string& message) const {
   ++kind->count;

@@ -16,8 +16,9 @@ namespace loopgrid {
 /// begins `file:line: `.
 class GraphLine {
  public:
-  GraphLine(const LineReader& lines, std::string_view text, GraphNotes* notes)
-      : lines_(lines), fields_(text), notes_(notes), tag_(fields_.Next()) {}
+  GraphLine(const LineReader& lines, std::string_view text, const GraphReadOptions& options,
+            GraphNotes* notes)
+      : lines_(lines), fields_(text), options_(options), notes_(notes), tag_(fields_.Next()) {}
 
   std::string_view tag() const { return tag_; }
   std::int64_t number() const { return lines_.line_number(); }
@@ -50,9 +51,12 @@ class GraphLine {
   /// Refuses what follows the last field.
   void End();
 
-  /// Refuses a symmetric matrix that is not positive semi-definite, up to rounding in the file.
+  /// Makes the information matrix of the edge between two vertices, given by their ids, positive
+  /// semi-definite. Eigenvalues that are negative by rounding (kInformationRounding) become zero.
+  /// So do others in lenient reading, which is noted; otherwise they are refused.
   template <int kSize>
-  void RequireInformation(const Eigen::Matrix<double, kSize, kSize>& matrix) const;
+  void RequireInformation(std::int64_t from, std::int64_t to,
+                          Eigen::Matrix<double, kSize, kSize>* matrix) const;
 
   GraphNotes* notes() const { return notes_; }
   /// Counts the line, and says why if it is among the first.
@@ -71,6 +75,7 @@ class GraphLine {
 
   const LineReader& lines_;
   FieldCursor fields_;
+  const GraphReadOptions& options_;
   GraphNotes* notes_;
   std::string_view tag_;
   const char* expected_ = "";

@@ -101,7 +101,7 @@ void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
   constraint.T_from_to = ReadPose<Pose>(line);
   constraint.information = ReadInformation<Pose>(line, constraint.T_from_to);
   line->End();
-  line->RequireInformation(constraint.information);
+  line->RequireInformation(from, to, &constraint.information);
   builder->AddConstraint({from, to, line->number()}, constraint);
 }
 

@@ -274,8 +274,8 @@ TEST_F(OptimizeCommandTest, PartsAreOptimisedEachAndSaidToBe) {
 }
 
 TEST_F(OptimizeCommandTest, NotesSayWhatWasAcceptedAllTheSame) {
-  WriteFile(graph_, std::string(kSquare) + "PARAMS_CAMERA 1 2 3\n");
-  ExpectRefusal(Arguments{}, "square.g2o:9: unknown tag 'PARAMS_CAMERA'", 3);
+  WriteFile(graph_, std::string(kSquare) + "VERTEX_CAMERA 1 2 3\n");
+  ExpectRefusal(Arguments{}, "square.g2o:9: unknown tag 'VERTEX_CAMERA'", 3);
   const json report = OptimizeJson({"--lenient"});
   EXPECT_EQ(report["graph"]["notes"]["unknown_tags"], 1);
   EXPECT_THAT(Optimize({"--lenient"}).output, HasSubstr("square.g2o:9: unknown tag"));
@@ -285,6 +285,26 @@ TEST_F(OptimizeCommandTest, NotesSayWhatWasAcceptedAllTheSame) {
   EXPECT_THAT(Optimize().output, HasSubstr("4 nodes got their poses from a spanning tree"));
   WriteFile(graph_, kSpace);
   EXPECT_THAT(Optimize().output, HasSubstr("normalised"));
+}
+
+TEST_F(OptimizeCommandTest, DataBesideTheGraphArePassedOverAndCounted) {
+  const json plain = OptimizeJson();
+  WriteFile(graph_, std::string(kSquare) + "ROBOTLASER1 0 1 2 3\nVERTEX_TAG 4 door\n");
+  const json report = OptimizeJson();
+  EXPECT_EQ(report["graph"]["notes"]["data_lines"], 2);
+  EXPECT_EQ(report["error"], plain["error"]);
+  EXPECT_THAT(Optimize().output,
+              HasSubstr("2 lines with data that are no part of the graph were passed over"));
+}
+
+TEST_F(OptimizeCommandTest, IndefiniteInformationIsRefusedOrWhenLenientMended) {
+  WriteFile(graph_, std::string(kSquare) + "EDGE_SE2 10 20 1 0 0 1 2 0 1 0 1\n");
+  ExpectRefusal(Arguments{},
+                "square.g2o:9: the information matrix between 10 and 20 is not positive "
+                "semi-definite: its smallest eigenvalue is -1",
+                3);
+  EXPECT_EQ(OptimizeJson({"--lenient"})["graph"]["notes"]["indefinite_information"], 1);
+  EXPECT_THAT(Optimize({"--lenient"}).output, HasSubstr("1 information matrix was replaced"));
 }
 
 TEST_F(OptimizeCommandTest, ResultDoesNotDependOnThreadsButTimings) {

@@ -29,7 +29,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 template <typename Matrix>
-Matrix UpperTriangle(const Matrix& matrix) {
+Matrix UpperPart(const Matrix& matrix) {
   return matrix.template triangularView<Eigen::Upper>();
 }
 
@@ -52,16 +52,16 @@ void ExpectSameGraph(const PoseGraph<Pose>& a, const PoseGraph<Pose>& b) {
     EXPECT_EQ(a.constraints[k].from, b.constraints[k].from);
     EXPECT_EQ(a.constraints[k].to, b.constraints[k].to);
     ExpectSamePose(a.constraints[k].T_from_to, b.constraints[k].T_from_to);
-    EXPECT_EQ(UpperTriangle(a.constraints[k].information),
-              UpperTriangle(b.constraints[k].information));
+    EXPECT_EQ(UpperPart(a.constraints[k].information),
+              UpperPart(b.constraints[k].information));
   }
   ASSERT_EQ(a.observations.size(), b.observations.size());
   for (std::size_t k = 0; k < a.observations.size(); ++k) {
     EXPECT_EQ(a.observations[k].node, b.observations[k].node);
     EXPECT_EQ(a.observations[k].landmark, b.observations[k].landmark);
     EXPECT_EQ(a.observations[k].p_node, b.observations[k].p_node);
-    EXPECT_EQ(UpperTriangle(a.observations[k].information),
-              UpperTriangle(b.observations[k].information));
+    EXPECT_EQ(UpperPart(a.observations[k].information),
+              UpperPart(b.observations[k].information));
   }
 }
 
@@ -195,6 +195,41 @@ TEST(GraphFile, LenientReadingPassesOverUnknownTagsAndCountsThem) {
   EXPECT_EQ(ReadGraphOf<SE2>(file.path(), {.lenient = true}).graph.poses.size(), 1U);
 }
 
+TEST(GraphFile, DataThatG2oKeepsBesideTheGraphArePassedOverAndCounted) {
+  const MemoryFile file(
+      "PARAMS_SE2OFFSET 0 0 0 0\n"
+      "VERTEX_SE2 0 0 0 0\n"
+      "ROBOTLASER1 0 -1.57 3.14 0.0174 50 0.1 0 3 1.5 1.6 1.7 0 0 0 0 0 0 0 0 0 0 0 1.25 host 1\n"
+      "VERTEX_SE2 1 1 0 0\n"
+      "RAWLASER1 0 -1.57 3.14 0.0174 50 0.1 0 2 1.5 nan 0 1.25 host 1\n"
+      "VERTEX_TAG 4 door\n"
+      "VERTEX_ELLIPSE 1 0 0 1 0 1 0\n"
+      "PARAMS_CAMERACALIB 1\n"
+      "FIX 1\n"
+      "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n");
+  GraphNotes notes;
+  const auto read = ReadGraphOf<SE2>(file.path(), {}, &notes);
+  EXPECT_EQ(read.graph.poses.size(), 2U);
+  EXPECT_EQ(read.graph.constraints.size(), 1U);
+  EXPECT_THAT(read.graph.fixed, ElementsAre(1));
+  EXPECT_EQ(notes.data_lines.count, 6);
+  EXPECT_THAT(
+      notes.data_lines.messages,
+      ElementsAre(file.path() + ":1: 'PARAMS_SE2OFFSET' is no part of the graph, passed over",
+                  file.path() + ":3: 'ROBOTLASER1' is no part of the graph, passed over",
+                  file.path() + ":5: 'RAWLASER1' is no part of the graph, passed over"));
+  EXPECT_EQ(notes.unknown_tags.count, 0);
+}
+
+TEST(GraphFile, EdgesAndVerticesThatAreNotUnderstoodAreNoData) {
+  ExpectLinesRefused("VERTEX_SE2 0 0 0 0\n",
+                     {{"EDGE_PRIOR_SE2 0 1 0 0 1 0 0 1 0 1", "unknown tag 'EDGE_PRIOR_SE2'"},
+                      {"EDGE_SE2_OFFSET 0 1 0 0 1 0 0 1 0 0 1 0 1", "unknown tag"},
+                      {"VERTEX_TAGS 0", "unknown tag"},
+                      {"ROBOTLASER 0", "unknown tag"},
+                      {"PARAMS", "unknown tag"}});
+}
+
 TEST(GraphFile, LenientReadingRefusesAllElse) {
   EXPECT_THROW(ReadGraphText<SE2>("VERTEX_SE2 0 0 0\n", nullptr, true), Error);
   EXPECT_THROW(ReadGraphText<SE2>("VERTEX_SE2 0 0 0 0\nFIX 1\n", nullptr, true), Error);
@@ -204,7 +239,9 @@ TEST(GraphFile, LenientReadingRefusesAllElse) {
 TEST(GraphFile, NothingIsNotedOfACleanFile) {
   GraphNotes notes;
   ReadGraphText<SE3>("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n", &notes);
+  EXPECT_EQ(notes.data_lines.count, 0);
   EXPECT_EQ(notes.unknown_tags.count, 0);
+  EXPECT_EQ(notes.indefinite_information.count, 0);
   EXPECT_EQ(notes.normalized_quaternions.count, 0);
   EXPECT_EQ(notes.guessed_nodes, 0);
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <limits>
 #include <random>
@@ -45,7 +47,7 @@ std::string UpperTriangle(const Eigen::Matrix<double, kSize, kSize>& matrix) {
   std::string text;
   for (int row = 0; row < kSize; ++row) {
     for (int column = row; column < kSize; ++column) {
-      text += " " + std::to_string(matrix(row, column));
+      text += fmt::format(" {}", matrix(row, column));
     }
   }
   return text;
@@ -81,10 +83,14 @@ TYPED_TEST(InformationTest, IsRefusedIfAnEigenvalueIsNegative) {
     const auto with = [&](double smallest) {
       values[0] = smallest;
       const Matrix V = solver.eigenvectors();
-      return test_support::Refusal(EdgeWith<kSize>(V * values.asDiagonal() * V.transpose()));
+      const Matrix information = V * values.asDiagonal() * V.transpose();
+      return test_support::Refusal(EdgeWith<kSize>(information));
     };
     EXPECT_EQ(with(1.0), "") << "round " << round;
-    EXPECT_EQ(with(-1.0), "3: the information matrix is not positive semi-definite")
+    EXPECT_EQ(
+        with(-1.0),
+        "3: the information matrix between 0 and 1 is not positive semi-definite: its smallest "
+        "eigenvalue is -1")
         << "round " << round;
   }
 }
@@ -102,11 +108,62 @@ TYPED_TEST(InformationTest, MayBeSemidefinite) {
 TEST(GraphLine, InformationIsJudgedUpToRoundingInTheFile) {
   // Of rank one, but for rounding.
   EXPECT_EQ(test_support::Refusal(kVertices + "EDGE_SE2 0 1 0 0 0 1 0.3 0.7 0.09 0.21 0.49"), "");
+  EXPECT_EQ(test_support::Refusal(kVertices + "EDGE_SE2 0 1 0 0 0 1 0 0 1 0 -1e-12"), "");
+  EXPECT_EQ(test_support::Refusal(kVertices + "EDGE_SE2 0 1 0 0 0 1e6 0 0 1e6 0 -9e-4"), "");
   ExpectLinesRefused(kVertices, {
                                     {"EDGE_SE2 0 1 0 0 0 1 2 0 1 0 1", "semi-definite"},
                                     {"EDGE_SE2 0 1 0 0 0 1 0 0 1 0 -1e-3", "semi-definite"},
+                                    {"EDGE_SE2 0 1 0 0 0 1e6 0 0 1e6 0 -2e-3", "is -0.002"},
+                                    {"EDGE_SE2 1 0 0 0 0 1 2 0 1 0 1", "between 1 and 0 is not"},
+                                    {"EDGE2 0 1 0 0 0 1 2 1 1 0 0", "eigenvalue is -1"},
                                     {"EDGE_SE2 0 1 0 0 0 0 1e-3 0 0 0 0", "semi-definite"},
                                 });
+}
+
+TEST(GraphLine, EigenvaluesThatAreNegativeByRoundingBecomeZero) {
+  const auto file =
+      test_support::ReadGraphText<SE2>(kVertices + "EDGE_SE2 0 1 0 0 0 1 0 0 2 0 -1e-10\n");
+  const Eigen::Matrix3d expected = Eigen::Vector3d(1.0, 2.0, 0.0).asDiagonal();
+  EXPECT_TRUE(file.graph.constraints[0].information.isApprox(expected, 1e-15));
+}
+
+TEST(GraphLine, LenientReadingTakesTheNearestSemidefiniteInformationAndCounts) {
+  // Eigenvalues 3 along (1, 1), -1 along (1, -1); and 5.
+  const test_support::MemoryFile file(kVertices +
+                                      "EDGE_SE2 0 1 0 0 0 1 2 0 1 0 5\n"
+                                      "EDGE_SE2 1 0 0 0 0 1 0 0 1 0 1\n"
+                                      "EDGE_SE2 0 1 0 0 0 -4 0 0 -4 0 -4\n");
+  EXPECT_THROW(ReadGraph(file.path()), Error);
+  GraphNotes notes;
+  const auto read = ReadGraphOf<SE2>(file.path(), {.lenient = true}, &notes);
+  Eigen::Matrix3d expected;
+  expected << 1.5, 1.5, 0.0, 1.5, 1.5, 0.0, 0.0, 0.0, 5.0;
+  EXPECT_TRUE(read.graph.constraints[0].information.isApprox(expected, 1e-14))
+      << read.graph.constraints[0].information;
+  EXPECT_EQ(read.graph.constraints[1].information, Eigen::Matrix3d::Identity());
+  EXPECT_TRUE(read.graph.constraints[2].information.isZero(0.0));
+  EXPECT_EQ(notes.indefinite_information.count, 2);
+  EXPECT_THAT(
+      notes.indefinite_information.messages,
+      ::testing::ElementsAre(
+          file.path() +
+              ":3: the information matrix between 0 and 1 is not positive semi-definite: its "
+              "smallest eigenvalue is -1; negative ones set to zero",
+          file.path() +
+              ":5: the information matrix between 0 and 1 is not positive semi-definite: its "
+              "smallest eigenvalue is -4; negative ones set to zero"));
+}
+
+TEST(GraphLine, WhatLenientReadingMendsIsAcceptedWhenItIsReadAgain) {
+  for (const char* information : {"1 2 0 1 0 1", "1e-300 1e300 0 1e-300 0 1e300", "1 1 1 1 1 0.5",
+                                  "0 1e-322 0 0 0 1e-321", "1e-13 1e-11 0 0 0 1"}) {
+    const auto mended = test_support::ReadGraphText<SE2>(
+        kVertices + "EDGE_SE2 0 1 0 0 0 " + information, nullptr, true);
+    const std::string text = FormatGraph(mended.graph, mended.ids);
+    EXPECT_EQ(test_support::Refusal(text), "") << information;
+    const auto again = test_support::ReadGraphText<SE2>(text);
+    EXPECT_EQ(FormatGraph(again.graph, again.ids), text) << information;
+  }
 }
 
 TEST(GraphLine, InformationMayBeAsLargeAndSmallAsADouble) {
