@@ -39,6 +39,12 @@ void CompleteOptions(OnlineOptions* options) {
   options->run.slam.threads = options->threads;
 }
 
+std::unique_ptr<LineSource> OpenFollowSource(const OnlineOptions& options) {
+  auto source = std::make_unique<FollowSource>(options.follow);
+  if (!options.run.quiet && !source->has_file()) Note("waiting for the file " + source->name());
+  return source;
+}
+
 std::unique_ptr<LineSource> OpenListenSource(const OnlineOptions& options) {
   const HostPort address = ParseHostPort(options.listen);
   auto source = std::make_unique<ListenSource>(
@@ -52,7 +58,7 @@ std::unique_ptr<LineSource> OpenListenSource(const OnlineOptions& options) {
 }
 
 std::unique_ptr<LineSource> OpenSource(const OnlineOptions& options) {
-  if (!options.follow.empty()) return std::make_unique<FollowSource>(options.follow);
+  if (!options.follow.empty()) return OpenFollowSource(options);
   if (!options.listen.empty()) return OpenListenSource(options);
   if (!options.connect.empty()) {
     return std::make_unique<ConnectSource>(
@@ -105,12 +111,22 @@ class SourceThread {
   std::thread thread_;
 };
 
+/// Tells the user what has gone wrong at the source.
+void TellNotices(LineSource* source, ProgressBar* bar) {
+  for (const std::string& notice : source->TakeNotices()) {
+    bar->Clear();
+    Note(source->name() + ": " + notice);
+  }
+}
+
 /// Maps what comes until the end of the stream.
-void MapStream(LineQueue* queue, OnlineSession* session, LiveOutputs* live, ProgressBar* bar) {
+void MapStream(LineSource* source, LineQueue* queue, OnlineSession* session, LiveOutputs* live,
+               ProgressBar* bar) {
   constexpr std::chrono::milliseconds kIdle(50);
   ReceivedLine line;
   while (true) {
     live->Tick(session->mapper());
+    TellNotices(source, bar);
     bar->Update(0.0, session->mapper()->log().scans);
     if (!queue->Wait(kIdle)) continue;
     if (!queue->Pop(&line)) return;
@@ -174,7 +190,8 @@ void OnlineCommand(OnlineOptions options) {
   session.Replay(!options.resume.empty());
 
   SourceThread reading(source.get(), &queue);
-  MapStream(&queue, &session, &live, &bar);
+  MapStream(source.get(), &queue, &session, &live, &bar);
+  TellNotices(source.get(), &bar);
   session.End();
   if (session.mapper()->log().scans == 0) reading.RethrowProblem();
   RequireScans(source->name(), session.mapper()->log());

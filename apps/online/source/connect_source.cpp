@@ -5,9 +5,11 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <utility>
 
 #include "apps/online/source/back_off.h"
 #include "apps/online/source/line_inlet.h"
+#include "apps/online/source/sender_check.h"
 #include "apps/online/source/shared_counters.h"
 #include "apps/online/source/socket_reader.h"
 #include "backend/base/error.h"
@@ -19,7 +21,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-// The system's own patience with hosts that do not answer is minutes.
+// The system itself waits for minutes for a host that does not answer.
 constexpr std::chrono::seconds kPatience{10};
 
 }  // namespace
@@ -33,6 +35,7 @@ class ConnectSource::Client {
   void Stop() { io_.stop(); }
   std::string name() const { return ToString(options_.address); }
   SourceCounters counters() const { return counters_.Snapshot(); }
+  std::vector<std::string> TakeNotices() { return counters_.TakeNotices(); }
 
  private:
   void Resolve();
@@ -40,7 +43,9 @@ class ConnectSource::Client {
   void Begin();
   void WaitForBytes();
   void Read();
+  void TakeBytes(std::string_view bytes);
   void EndOfSender();
+  bool FinishLines();
   void Fail(const std::string& problem);
   void TryAgainLater();
 
@@ -54,6 +59,7 @@ class ConnectSource::Client {
 
   LineInlet* inlet_ = nullptr;  // while running
   bool sent_something_ = false;
+  SenderCheck check_;  // of this connection
   SocketReader reader_;
   SharedCounters counters_;
 };
@@ -63,7 +69,7 @@ void ConnectSource::Client::Run(LineQueue* queue) {
   inlet_ = &inlet;
   Resolve();
   io_.run();
-  inlet.Finish();
+  FinishLines();
   error_code ignored;
   socket_.close(ignored);
 }
@@ -73,7 +79,7 @@ void ConnectSource::Client::Resolve() {
       options_.address.host, std::to_string(options_.address.port), tcp::resolver::numeric_service,
       [this](const error_code& error, const tcp::resolver::results_type& endpoints) {
         if (error) {
-          Fail(error.message());
+          Fail("cannot connect: " + error.message());
         } else {
           Dial(endpoints);
         }
@@ -90,7 +96,7 @@ void ConnectSource::Client::Dial(const tcp::resolver::results_type& endpoints) {
     // No timer to cancel any more: it has just closed the socket.
     const bool in_time = patience_.cancel() > 0;
     if (error || !in_time) {
-      Fail(in_time ? error.message() : "does not answer");
+      Fail("cannot connect: " + (in_time ? error.message() : "no answer"));
     } else {
       Begin();
     }
@@ -100,6 +106,7 @@ void ConnectSource::Client::Dial(const tcp::resolver::results_type& endpoints) {
 void ConnectSource::Client::Begin() {
   KeepAlive(socket_.native_handle());
   sent_something_ = false;
+  check_ = {};
   counters_.Count(&SourceCounters::connections);
   WaitForBytes();
 }
@@ -112,18 +119,35 @@ void ConnectSource::Client::Read() {
   const SocketReader::Outcome outcome = reader_.Read(socket_.native_handle());
   if (outcome == SocketReader::Outcome::kEnd) {
     EndOfSender();
+  } else if (outcome == SocketReader::Outcome::kBytes) {
+    TakeBytes(reader_.bytes());
+  } else {
+    WaitForBytes();
+  }
+}
+
+void ConnectSource::Client::TakeBytes(std::string_view bytes) {
+  const std::string_view passed = check_.Pass(bytes);
+  if (!check_.problem().empty()) {
+    Fail("left the sender: " + std::string(check_.problem()));
     return;
   }
-  if (outcome == SocketReader::Outcome::kBytes) {
-    sent_something_ = true;
+  if (!passed.empty()) {
+    if (!std::exchange(sent_something_, true)) counters_.Recover();
     back_off_.Reset();
-    if (!inlet_->Add(reader_.bytes())) io_.stop();
+    if (!inlet_->Add(passed)) io_.stop();
   }
   WaitForBytes();
 }
 
+/// Gives out what the sender sent last, also without a line end. False once the queue is closed.
+bool ConnectSource::Client::FinishLines() {
+  sent_something_ = sent_something_ || check_.holds_bytes();
+  return inlet_->Add(check_.Rest()) && inlet_->Finish();
+}
+
 void ConnectSource::Client::EndOfSender() {
-  if (!inlet_->Finish() || (options_.end_with_sender && sent_something_)) {
+  if (!FinishLines() || (options_.end_with_sender && sent_something_)) {
     io_.stop();
     return;
   }
@@ -158,5 +182,6 @@ void ConnectSource::Run(LineQueue* queue) { client_->Run(queue); }
 void ConnectSource::Stop() { client_->Stop(); }
 std::string ConnectSource::name() const { return client_->name(); }
 SourceCounters ConnectSource::counters() const { return client_->counters(); }
+std::vector<std::string> ConnectSource::TakeNotices() { return client_->TakeNotices(); }
 
 }  // namespace loopgrid

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/net/host_port.h"
 #include "apps/online/source/line_source.h"
@@ -15,8 +16,9 @@ struct ConnectOptions {
   double longest_pause = 10.0;   ///< ... up to this, until something was received
 };
 
-/// Lines that are fetched over TCP. Where there is no connection, or none any more, another attempt
-/// is made, for ever. The last line of each connection is given out as it is.
+/// Lines that are fetched over TCP. While there is no connection, further attempts are made,
+/// without end. A sender whose first bytes are no log (see SenderCheck) is left, and counts as a
+/// failed attempt. The last line of each connection is given out even if it has no end.
 class ConnectSource : public LineSource {
  public:
   /// Throws Error (kUsage) for port 0. Nothing is dialled before Run().
@@ -27,6 +29,7 @@ class ConnectSource : public LineSource {
   void Stop() override;
   std::string name() const override;
   SourceCounters counters() const override;
+  std::vector<std::string> TakeNotices() override;
 
  private:
   class Client;

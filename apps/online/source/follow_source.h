@@ -31,6 +31,9 @@ class FollowSource : public LineSource {
   void Run(LineQueue* queue) override;
   void Stop() override { wake_up_.Signal(); }
   std::string name() const override { return path_; }
+
+  /// Before Run(): whether the file is there already.
+  bool has_file() const { return static_cast<bool>(file_); }
   SourceCounters counters() const override { return counters_.Snapshot(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "apps/online/source/line_queue.h"
 
@@ -10,7 +11,7 @@ namespace loopgrid {
 /// What a source met so far; what does not apply to its kind stays 0.
 struct SourceCounters {
   std::int64_t connections = 0;  ///< senders that were listened to, one after the other
-  std::int64_t refused = 0;      ///< senders turned away, as another one was at it
+  std::int64_t refused = 0;      ///< senders turned away: another one was sending, or no log came
   std::int64_t failures = 0;     ///< attempts to connect that failed
   std::int64_t rotations = 0;    ///< times a new file took the place of the one that was followed
   std::int64_t truncations = 0;  ///< times that file shrank and was read from its beginning again
@@ -37,6 +38,10 @@ class LineSource {
 
   /// Any thread may call it.
   virtual SourceCounters counters() const { return {}; }
+
+  /// What has gone wrong since the last call, a line each, for the user. A problem that lasts, or
+  /// comes again before the source has worked, is told once. Any thread may call it.
+  virtual std::vector<std::string> TakeNotices() { return {}; }
 };
 
 }  // namespace loopgrid

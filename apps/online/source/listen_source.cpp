@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/online/source/line_inlet.h"
+#include "apps/online/source/sender_check.h"
 #include "apps/online/source/shared_counters.h"
 #include "apps/online/source/socket_reader.h"
 #include "backend/base/error.h"
@@ -69,6 +70,7 @@ class ListenSource::Server {
   int port() const { return port_; }
   std::string name() const { return ToString({options_.address.host, port_}); }
   SourceCounters counters() const { return counters_.Snapshot(); }
+  std::vector<std::string> TakeNotices() { return counters_.TakeNotices(); }
 
  private:
   void Accept();
@@ -77,7 +79,9 @@ class ListenSource::Server {
   void Begin(tcp::socket sender);
   void WaitForBytes();
   void Read();
+  void TakeBytes(std::string_view bytes);
   void EndOfSender();
+  bool FinishLines();
   void PassOn();
 
   ListenOptions options_;
@@ -91,6 +95,7 @@ class ListenSource::Server {
   std::optional<tcp::socket> next_;    // the one that comes after it
   int number_ = 0;                     // of the sender, from 1
   bool sent_something_ = false;
+  SenderCheck check_;            // of the sender
   Clock::time_point last_line_;  // of the sender
   SocketReader reader_;
   SharedCounters counters_;
@@ -101,7 +106,7 @@ void ListenSource::Server::Run(LineQueue* queue) {
   inlet_ = &inlet;
   Accept();
   io_.run();
-  inlet.Finish();
+  FinishLines();
   acceptor_.close();
   sender_.reset();
   next_.reset();
@@ -115,7 +120,7 @@ void ListenSource::Server::Accept() {
       return;
     }
     counters_.Note("cannot accept: " + error.message());
-    // Out of descriptors, say: whoever knocks goes on knocking, and so would we.
+    // The process may be out of descriptors. Without a pause, the attempts would never stop.
     pause_.expires_after(std::chrono::milliseconds(100));
     pause_.async_wait([this](const error_code&) { Accept(); });
   });
@@ -132,6 +137,7 @@ void ListenSource::Server::Place(tcp::socket newcomer) {
     PassOn();
   } else {
     counters_.Count(&SourceCounters::refused);
+    counters_.Note("turned a sender away: another one is sending");
   }
 }
 
@@ -144,6 +150,7 @@ void ListenSource::Server::Begin(tcp::socket sender) {
   sender_ = std::move(sender);
   ++number_;
   sent_something_ = false;
+  check_ = {};
   last_line_ = Clock::now();
   counters_.Count(&SourceCounters::connections);
   WaitForBytes();
@@ -151,7 +158,7 @@ void ListenSource::Server::Begin(tcp::socket sender) {
 
 void ListenSource::Server::WaitForBytes() {
   sender_->async_wait(tcp::socket::wait_read, [this, number = number_](const error_code&) {
-    if (number != number_ || !sender_) return;  // it was about one who is gone
+    if (number != number_ || !sender_) return;  // that sender is gone
     Read();
     if (number == number_ && sender_) WaitForBytes();
   });
@@ -163,24 +170,39 @@ void ListenSource::Server::Read() {
     if (!reader_.problem().empty()) counters_.Note(reader_.problem());
     EndOfSender();
   } else if (outcome == SocketReader::Outcome::kBytes) {
-    sent_something_ = true;
-    if (!inlet_->Add(reader_.bytes())) io_.stop();
-    if (inlet_->completed_line()) last_line_ = Clock::now();
+    TakeBytes(reader_.bytes());
   }
 }
 
+void ListenSource::Server::TakeBytes(std::string_view bytes) {
+  const std::string_view passed = check_.Pass(bytes);
+  if (!check_.problem().empty()) {
+    counters_.Count(&SourceCounters::refused);
+    counters_.Note("turned a sender away: " + std::string(check_.problem()));
+    PassOn();
+    return;
+  }
+  if (passed.empty()) return;  // it cannot be told yet whether this is a log
+  if (!std::exchange(sent_something_, true)) counters_.Recover();
+  if (!inlet_->Add(passed)) io_.stop();
+  if (inlet_->completed_line()) last_line_ = Clock::now();
+}
+
 void ListenSource::Server::EndOfSender() {
-  if (options_.end_with_sender && sent_something_) {
+  if (options_.end_with_sender && (sent_something_ || check_.holds_bytes())) {
     io_.stop();
   } else {
     PassOn();
   }
 }
 
+/// Gives out what the sender sent last, also without a line end. False once the queue is closed.
+bool ListenSource::Server::FinishLines() { return inlet_->Add(check_.Rest()) && inlet_->Finish(); }
+
 /// From the sender to the next one, if there is one.
 void ListenSource::Server::PassOn() {
   sender_.reset();
-  if (!inlet_->Finish()) io_.stop();
+  if (!FinishLines()) io_.stop();
   if (!next_) return;
   tcp::socket next = std::move(*next_);
   next_.reset();
@@ -195,6 +217,7 @@ void ListenSource::Run(LineQueue* queue) { server_->Run(queue); }
 void ListenSource::Stop() { server_->Stop(); }
 std::string ListenSource::name() const { return server_->name(); }
 SourceCounters ListenSource::counters() const { return server_->counters(); }
+std::vector<std::string> ListenSource::TakeNotices() { return server_->TakeNotices(); }
 int ListenSource::port() const { return server_->port(); }
 
 }  // namespace loopgrid

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/net/host_port.h"
 #include "apps/online/source/line_source.h"
@@ -15,10 +16,11 @@ struct ListenOptions {
 };
 
 /// Lines that arrive over TCP, from one sender at a time. Others are turned away at once (their
-/// connection is closed), with two exceptions: one who comes when the sender has said its last
-/// (though not all of it was read yet) is the next; and a sender that completes no line for a while
-/// loses its place to whoever wants it, for it may be long dead, or up to no good. The last line of
-/// each is given out as it is.
+/// connection is closed), with two exceptions. One that comes after the sender has closed its side,
+/// while not all was read yet, is the next sender. And a sender that completes no line for a while
+/// loses its place to the next one that connects, for it may be dead. A sender whose first bytes
+/// are no log (see SenderCheck) is turned away as well. The last line of each sender is given out
+/// even if it has no end.
 class ListenSource : public LineSource {
  public:
   /// Listens from now on. Throws Error (kInput) if the address cannot be had.
@@ -30,6 +32,7 @@ class ListenSource : public LineSource {
   /// The address with the real port.
   std::string name() const override;
   SourceCounters counters() const override;
+  std::vector<std::string> TakeNotices() override;
 
   /// The real one.
   int port() const;

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "backend/base/error.h"
+#include "backend/base/gzip.h"
 #include "tests/apps/online/running_source.h"
 #include "tests/apps/online/sockets.h"
 
@@ -18,6 +20,7 @@ using test_support::Listener;
 using test_support::RunningSource;
 using test_support::Socket;
 using test_support::WaitUntil;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -73,6 +76,40 @@ TEST(ConnectSource, TriesUntilSomebodyIsThere) {
   const Listener robot(port);
   robot.Accept().Send("one\n");
   EXPECT_THAT(running.WaitForLines(1), ElementsAre("one"));
+}
+
+TEST(ConnectSource, TellsOnceThatNobodyIsThereUntilSomebodyWas) {
+  const int port = FreePort();
+  ConnectSource source(To(port));
+  RunningSource running(&source);
+  const auto fails_five_times = [&source] {
+    const std::int64_t before = source.counters().failures;
+    return WaitUntil([&] { return source.counters().failures >= before + 5; });
+  };
+  ASSERT_TRUE(fails_five_times());
+  EXPECT_THAT(source.TakeNotices(), ElementsAre(HasSubstr("cannot connect: Connection refused")));
+  {
+    const Listener robot(port);
+    robot.Accept().Send("one\n");
+    running.WaitForLines(1);
+  }
+  ASSERT_TRUE(fails_five_times());
+  EXPECT_THAT(source.TakeNotices(), Contains(HasSubstr("cannot connect: Connection refused")));
+  ASSERT_TRUE(fails_five_times());
+  EXPECT_THAT(source.TakeNotices(), IsEmpty());
+}
+
+TEST(ConnectSource, LeavesASenderOfGzippedDataAndTriesAgain) {
+  const Listener robot;
+  ConnectSource source(To(robot.port()));
+  RunningSource running(&source);
+  const Socket packed = robot.Accept();
+  packed.Send(Gzip("FLASER"));
+  EXPECT_TRUE(packed.WaitForEnd());
+  EXPECT_THAT(source.TakeNotices(), ElementsAre(HasSubstr("gzip -dc")));
+  robot.Accept().Send("one\n");
+  EXPECT_THAT(running.WaitForLines(1), ElementsAre("one"));
+  EXPECT_EQ(source.counters().failures, 1);
 }
 
 TEST(ConnectSource, TriesOnWithANameThatIsNotKnown) {

@@ -5,6 +5,7 @@
 #include <netinet/tcp.h>
 #include <sys/resource.h>
 
+#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "backend/base/error.h"
+#include "backend/base/gzip.h"
 #include "tests/apps/online/running_source.h"
 #include "tests/apps/online/sockets.h"
 #include "tests/support/peak_memory.h"
@@ -116,6 +118,41 @@ TEST(ListenSource, ASilentSenderKeepsItsPlaceUntilItsTimeIsUp) {
       EXPECT_THAT(running.WaitForLines(2), ElementsAre("one", "two"));
       EXPECT_EQ(source.counters().refused, 1);
     }
+  }
+}
+
+TEST(ListenSource, TurnsAwayWhatWebPagesSendAndTellsItOnce) {
+  ListenOptions options = OnLoopback();
+  options.end_with_sender = true;  // which a refused one does not count for
+  ListenSource source(options);
+  RunningSource running(&source);
+  for (int i = 0; i < 3; ++i) {
+    const Socket page = Socket::ConnectTo(source.port());
+    page.Send("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\nFLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n");
+    EXPECT_TRUE(page.WaitForEnd());
+  }
+  const Socket packed = Socket::ConnectTo(source.port());
+  packed.Send(Gzip("FLASER"));
+  EXPECT_TRUE(packed.WaitForEnd());
+  Socket::ConnectTo(source.port()).Send("PARAM");  // held back until its end
+  running.WaitForEnd();
+  EXPECT_THAT(running.lines(), ElementsAre("PARAM~"));
+  EXPECT_EQ(source.counters().refused, 4);
+  EXPECT_THAT(source.TakeNotices(), ElementsAre(HasSubstr("HTTP"), HasSubstr("gzip -dc")));
+  EXPECT_THAT(source.counters().last_problem, HasSubstr("gzip"));
+}
+
+TEST(ListenSource, TellsOncePerSenderThatOthersAreTurnedAway) {
+  ListenSource source(OnLoopback());
+  RunningSource running(&source);
+  for (const char* name : {"first\n", "second\n"}) {
+    const Socket sender = Socket::ConnectTo(source.port());
+    sender.Send(name);
+    ASSERT_TRUE(WaitUntil([&] { return running.Count(std::string(name, std::strlen(name) - 1)); }));
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(Socket::ConnectTo(source.port()).WaitForEnd());
+    EXPECT_THAT(source.TakeNotices(), ElementsAre("turned a sender away: another one is sending"));
+    sender.CloseHalf();
+    EXPECT_TRUE(sender.WaitForEnd());
   }
 }
 
