@@ -41,7 +41,20 @@ std::optional<double> TimeOfScan(std::string_view line) {
   return message.timestamp;
 }
 
-/// Plays logs to an output. What is due at the same time is written at once.
+/// A log that is played without end has to have a scan: nothing else in it takes time.
+void RequireScan(const ReplayOptions& options) {
+  RawLineReader lines = OpenLines(options.log);
+  std::string_view piece;
+  while (lines.Next(&piece)) {
+    const bool is_played = lines.line_number() >= options.from_line;
+    if (is_played && lines.whole() && TimeOfScan(piece)) return;
+  }
+  throw Error(ErrorCode::kInput,
+              fmt::format("{}: has no scan from line {} on, so it cannot be played without end",
+                          options.log, options.from_line));
+}
+
+/// Plays logs to an output. Lines that are due at the same time are written together.
 class Player {
  public:
   Player(const ReplayOptions& options, const ReplayOutput* output)
@@ -53,7 +66,8 @@ class Player {
   /// Writes what has been held back until now.
   void Flush();
 
-  /// For good: the line that is being written is the last one, unless nobody takes it.
+  /// Nothing is written any more. Waits for the line that is being written, unless the receiver
+  /// does not take it.
   void Stop() { static_cast<void>(writing_.try_lock_for(std::chrono::seconds(1))); }
 
  private:
@@ -113,6 +127,7 @@ void Player::WaitUntil(double due) {
 
 void ReplayCommand(const ReplayOptions& options) {
   options.Validate();
+  if (options.loop == 0) RequireScan(options);
   RawLineReader lines = OpenLines(options.log);
   const ReplayOutput output =
       options.to.empty() ? ReplayOutput() : ReplayOutput(ParseHostPort(options.to));

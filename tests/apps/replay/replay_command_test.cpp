@@ -166,6 +166,16 @@ TEST_F(ReplayCommandTest, WhatCannotBePlayedIsRefused) {
   ExpectRefusal(folder_, {"replay", log, "--to", "robot"}, 2, "'robot' is not HOST:PORT");
 }
 
+TEST_F(ReplayCommandTest, ALogWithoutScansIsNotPlayedWithoutEnd) {
+  const std::string log = folder_.Write("a.clf", "a\n" + Scan(1) + "ODOM 1 2 3\nFLASER oh\n");
+  for (const char* speed : {"0", "1"}) {
+    ExpectRefusal(folder_, {"replay", log, "--loop", "0", "--from-line", "3", "--speed", speed}, 3,
+                  "a.clf: has no scan from line 3 on");
+  }
+  const std::string empty = folder_.Write("empty.clf", "\n\n");
+  ExpectRefusal(folder_, {"replay", empty, "--loop", "0"}, 3, "has no scan from line 1 on");
+}
+
 TEST_F(ReplayCommandTest, ALogThatBreaksOffIsPlayedUntilThere) {
   const std::string log = SmallLog(300);
   const std::string packed = Gzip(log);
