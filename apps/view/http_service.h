@@ -4,24 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "apps/view/http_connection.h"
 #include "apps/view/view_options.h"
-#include "apps/view/view_routes.h"
 
 namespace loopgrid {
-
-/// What an HttpService serves. It is asked on the service's thread.
-class HttpContent {
- public:
-  virtual ~HttpContent() = default;
-
-  virtual Reply Answer(const Request& request) = 0;
-
-  /// Called once a batch: what has happened since, for all who follow events; null if nothing.
-  virtual std::shared_ptr<const std::string> TakeNews() = 0;
-
-  /// Where things stood at the last news, for somebody who knows nothing.
-  virtual std::shared_ptr<const std::string> Snapshot() = 0;
-};
 
 struct HttpCounters {
   int connections = 0;           ///< open now
@@ -32,13 +18,14 @@ struct HttpCounters {
 };
 
 /// An HTTP/1.1 server for GET and HEAD, with server-sent events, on a thread of its own. A
-/// connection never takes more than its header (8 KiB), a reply that all share and `max_backlog`.
+/// connection takes no more memory than its header (8 KiB), a reply that all connections share, and
+/// `max_backlog`.
 class HttpService {
  public:
   /// Binds; Start() begins to serve. Throws Error (kInput) if the address cannot be bound.
   explicit HttpService(const ViewServerOptions& options);
 
-  /// Drops all connections.
+  /// Closes all connections.
   ~HttpService();
   HttpService(const HttpService&) = delete;
   HttpService& operator=(const HttpService&) = delete;

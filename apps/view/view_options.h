@@ -11,9 +11,9 @@ struct ViewServerOptions {
   int port = 0;                    ///< 0: any that is free
   int max_connections = 512;       ///< further ones are closed at once
   double request_timeout = 10.0;   ///< for a whole request header, also between two, seconds
-  double write_timeout = 30.0;     ///< who takes nothing for so long is dropped, seconds
+  double write_timeout = 30.0;     ///< a client that takes no byte for so long is dropped, seconds
   double batch_interval = 0.033;   ///< viewers get news at most this often, seconds
-  std::size_t max_backlog = std::size_t{1} << 20;  ///< waiting for a slow viewer, bytes
+  std::size_t max_backlog = std::size_t{1} << 20;  ///< what may wait for a slow viewer, bytes
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cstdint>
+#include <memory>
+#include <utility>
 
 #include "apps/view/view_page.h"
 #include "backend/base/parse_number.h"
@@ -12,7 +14,7 @@
 namespace loopgrid {
 namespace {
 
-// The output files that can be had while mapping.
+// An output file that is served while mapping goes on.
 struct ServedFile {
   std::string_view name;
   std::string_view type;
@@ -33,22 +35,6 @@ std::shared_ptr<const std::string> Shared(std::string_view text) {
   return std::make_shared<const std::string>(text);
 }
 
-// Without the port: "localhost:8080" -> "localhost", "[::1]:8080" -> "[::1]".
-std::string NameOf(std::string_view host) {
-  const std::size_t bracket = host.rfind(']');
-  const std::size_t colon = host.rfind(':');
-  if (colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket)) {
-    host = host.substr(0, colon);
-  }
-  std::string name(host);
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
-
-bool IsLocalName(const std::string& name) {
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
-}
-
 // "1/-2/3.png" -> level 1, x = -2, y = 3.
 bool ParseTile(std::string_view path, TileId* id) {
   constexpr std::string_view kEnd = ".png";
@@ -64,17 +50,9 @@ bool ParseTile(std::string_view path, TileId* id) {
 
 }  // namespace
 
-ViewRoutes::ViewRoutes(std::string run, bool only_local_names, const MapTiles* tiles,
+ViewRoutes::ViewRoutes(std::string run, HostCheck hosts, const MapTiles* tiles,
                        const PublishedFiles* files)
-    : run_(std::move(run)), only_local_names_(only_local_names), tiles_(tiles), files_(files) {}
-
-Reply ViewRoutes::Refusal(int status, std::string_view text) {
-  Reply reply;
-  reply.status = status;
-  reply.body = Shared(fmt::format("{}\n", text));
-  reply.headers = {{"Cache-Control", "no-store"}};
-  return reply;
-}
+    : run_(std::move(run)), hosts_(std::move(hosts)), tiles_(tiles), files_(files) {}
 
 Reply ViewRoutes::Answer(const Request& request) const {
   Reply reply = Dispatch(request);
@@ -87,8 +65,8 @@ Reply ViewRoutes::Answer(const Request& request) const {
 }
 
 Reply ViewRoutes::Dispatch(const Request& request) const {
-  if (only_local_names_ && !IsLocalName(NameOf(request.host))) {
-    return Refusal(403, "this server answers to localhost only");
+  if (!hosts_.Accepts(request.host)) {
+    return Refusal(403, "this server answers to names of this machine only");
   }
   if (request.method != "GET" && request.method != "HEAD") {
     Reply reply = Refusal(405, "only GET and HEAD");
@@ -133,7 +111,8 @@ Reply ViewRoutes::File(std::string_view name, std::string_view type) const {
   return reply;
 }
 
-// Asked for by its version, a tile may be kept for ever: the next change has another address.
+// A tile that is asked for with its version may be kept by the client: the next version has another
+// address.
 Reply ViewRoutes::Tile(std::string_view path, std::string_view query,
                        std::string_view if_none_match) const {
   TileId id;

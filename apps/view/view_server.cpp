@@ -2,33 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <random>
+#include <thread>
 #include <utility>
 #include <vector>
 
-#include "apps/net/host_port.h"
+#include "apps/net/host_check.h"
 #include "apps/view/view_routes.h"
 #include "apps/view/view_state.h"
-#include "backend/base/error.h"
-#include "backend/base/parse_number.h"
 
 namespace loopgrid {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kFinishTimeout = 2.0;  // seconds
+constexpr auto kFinishTimeout = std::chrono::seconds(2);
+constexpr auto kQuiet = std::chrono::milliseconds(300);
 constexpr auto kMovedNodesInterval = std::chrono::milliseconds(250);
-
-template <typename Number>
-void RequireBetween(const char* field, Number value, Number low, Number high) {
-  if (value >= low && value <= high) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("{} is {}, expected {} to {}", field, value, low, high));
-}
 
 std::string RandomName() {
   std::random_device random;
@@ -37,36 +31,14 @@ std::string RandomName() {
 
 }  // namespace
 
-void ViewServerOptions::Validate() const {
-  if (host.empty()) throw Error(ErrorCode::kUsage, "host is empty, expected an address to bind to");
-  RequireBetween("port", port, 0, 65535);
-  RequireBetween("max_connections", max_connections, 1, 100'000);
-  RequireBetween("request_timeout", request_timeout, 0.01, 3600.0);
-  RequireBetween("write_timeout", write_timeout, 0.01, 3600.0);
-  RequireBetween("batch_interval", batch_interval, 0.001, 10.0);
-  RequireBetween("max_backlog", max_backlog, std::size_t{1}, std::size_t{1} << 30);
-}
-
-ViewServerOptions ParseViewAddress(std::string_view address) {
-  ViewServerOptions options;
-  if (ParseNumber(address, &options.port)) {
-    RequireBetween("port", options.port, 0, 65535);
-    return options;
-  }
-  HostPort host_port = ParseHostPort(address);
-  options.host = std::move(host_port.host);
-  options.port = host_port.port;
-  return options;
-}
-
 class ViewServer::Impl : public HttpContent {
  public:
   Impl(const ViewServerOptions& options, const LiveMap* map, const PublishedFiles* files)
       : map_(map),
         state_(RandomName(), map->resolution()),
         service_((options.Validate(), options)) {
-    routes_ =
-        std::make_unique<ViewRoutes>(state_.run(), service_.is_loopback(), &map->tiles(), files);
+    routes_ = std::make_unique<ViewRoutes>(
+        state_.run(), HostCheck(service_.is_loopback(), options.host), &map->tiles(), files);
     service_.Start(this);
   }
 
@@ -83,7 +55,9 @@ class ViewServer::Impl : public HttpContent {
       const std::lock_guard lock(mutex_);
       ending_ = true;
     }
-    service_.WaitUntilSent(kFinishTimeout);
+    const Clock::time_point start = Clock::now();
+    service_.WaitUntilSent(std::chrono::duration<double>(kFinishTimeout).count());
+    WaitForLastRequests(start + kFinishTimeout);
   }
 
   Reply Answer(const Request& request) override { return routes_->Answer(request); }
@@ -110,6 +84,20 @@ class ViewServer::Impl : public HttpContent {
   }
 
  private:
+  // A page that was told the end asks for the last tiles, and leaves when it has them. Other
+  // viewers ask for nothing.
+  void WaitForLastRequests(Clock::time_point deadline) const {
+    std::int64_t requests = -1;
+    Clock::time_point quiet_since;
+    while (true) {
+      const HttpCounters counters = service_.counters();
+      const Clock::time_point now = Clock::now();
+      if (std::exchange(requests, counters.requests) != counters.requests) quiet_since = now;
+      if (counters.viewers == 0 || now >= std::min(deadline, quiet_since + kQuiet)) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
   // True if nothing more will come.
   bool TakeInbox() {
     std::vector<OnlineUpdate> updates;

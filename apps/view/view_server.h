@@ -12,15 +12,15 @@
 namespace loopgrid {
 
 /// Serves the page and the HTTP API behind it, on a thread of its own. Viewers share what they are
-/// sent; one that is too slow for it skips ahead to a fresh state, so none takes more memory than
-/// `max_backlog` nor slows anybody. Only GET and HEAD; no request changes anything.
+/// sent. A viewer that is too slow skips ahead to a fresh state, so none takes more memory than
+/// `max_backlog` nor slows the others down. Only GET and HEAD; no request changes anything.
 class ViewServer {
  public:
   /// Binds. `map` and `files` must live longer than the server. Throws Error: kUsage if an option
   /// is not valid, kInput if the address cannot be bound.
   ViewServer(const ViewServerOptions& options, const LiveMap* map, const PublishedFiles* files);
 
-  /// Drops all connections.
+  /// Closes all connections.
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
@@ -33,8 +33,8 @@ class ViewServer {
   /// closures only. Returns at once.
   void Add(const OnlineUpdate& update);
 
-  /// Tells all viewers that nothing more will come, and waits until they have been sent everything,
-  /// at most two seconds.
+  /// Tells all viewers that nothing more will come. Waits until they have been sent everything and
+  /// have fetched the last pieces of the map, at most two seconds.
   void Finish();
 
   using Counters = HttpCounters;

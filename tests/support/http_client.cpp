@@ -43,11 +43,12 @@ struct HttpClient::Connection {
   }
 };
 
-HttpClient::HttpClient(int port) : connection_(std::make_unique<Connection>()), port_(port) {
+HttpClient::HttpClient(int port, const std::string& address)
+    : connection_(std::make_unique<Connection>()), port_(port) {
   connection_->stream.expires_after(kPatience);
-  connection_->stream.async_connect(
-      asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port)),
-      connection_->TakeError());
+  connection_->stream.async_connect(asio::ip::tcp::endpoint(asio::ip::make_address_v4(address),
+                                                            static_cast<unsigned short>(port)),
+                                    connection_->TakeError());
   connection_->Finish("connecting");
 }
 

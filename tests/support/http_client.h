@@ -19,11 +19,12 @@ struct HttpQuestion {
   std::string body = {};
 };
 
-/// A connection to an HTTP server on loopback that is kept for many requests. Gives up, by throwing
-/// std::runtime_error, after a minute without an answer.
+/// A connection to an HTTP server that is kept for many requests. Throws std::runtime_error after a
+/// minute without an answer.
 class HttpClient {
  public:
-  explicit HttpClient(int port);
+  /// `address` is an IPv4 address.
+  explicit HttpClient(int port, const std::string& address = "127.0.0.1");
   ~HttpClient();
   HttpClient(const HttpClient&) = delete;
   HttpClient& operator=(const HttpClient&) = delete;

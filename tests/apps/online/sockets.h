@@ -32,8 +32,12 @@ class Socket {
  public:
   explicit Socket(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
 
-  static Socket ConnectTo(int port) {
+  /// `receive_buffer`: its size in bytes; 0: the system decides.
+  static Socket ConnectTo(int port, int receive_buffer = 0) {
     Socket result(Descriptor(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)));
+    if (receive_buffer > 0) {
+      setsockopt(result.get(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    }
     const sockaddr_in address = LoopbackAddress(port);
     if (connect(result.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       throw std::runtime_error("cannot connect to port " + std::to_string(port));

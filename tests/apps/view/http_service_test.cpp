@@ -3,8 +3,14 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <memory>
 #include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "backend/base/error.h"
 #include "tests/apps/online/wait_until.h"
@@ -29,7 +35,8 @@ class Greeter : public HttpContent {
   Reply Answer(const Request& request) override {
     Reply reply;
     reply.body = std::make_shared<const std::string>("hello " + std::string(request.target));
-    reply.follows_events = request.target == "/events";
+    reply.follows_events = request.target == "/events" || request.target == "/long-snapshot";
+    if (request.target == "/long-snapshot") snapshot_size_ = 20'000'000;
     if (request.target == "/large") reply.body = std::make_shared<std::string>(20'000'000, 'x');
     return reply;
   }
@@ -43,7 +50,8 @@ class Greeter : public HttpContent {
 
   std::shared_ptr<const std::string> Snapshot() override {
     const std::lock_guard lock(mutex_);
-    return std::make_shared<const std::string>("snapshot after " + std::to_string(told_) + ";");
+    return std::make_shared<const std::string>("snapshot after " + std::to_string(told_) + ";" +
+                                               std::string(snapshot_size_, ' '));
   }
 
   void Tell(const std::string& news) {
@@ -55,6 +63,7 @@ class Greeter : public HttpContent {
   std::mutex mutex_;
   std::string news_;
   std::size_t told_ = 0;
+  std::size_t snapshot_size_ = 0;  // of the blanks behind it
 };
 
 ViewServerOptions QuickOptions() {
@@ -122,6 +131,17 @@ TEST_F(HttpServiceTest, RefusesBodiesAndHeadersThatAreTooLong) {
   EXPECT_EQ(AskOnce(port(), {.headers = {{"X-Long", std::string(9000, 'x')}}}).status, 431);
   EXPECT_EQ(AskOnce(port(), {.target = "/" + std::string(9000, 'x')}).status, 431);
   EXPECT_EQ(AskOnce(port(), {.headers = {{"X-Long", std::string(7000, 'x')}}}).status, 200);
+}
+
+TEST_F(HttpServiceTest, RefusesMoreThanOneHost) {
+  Start();
+  for (const char* second : {"localhost", "evil.example", ""}) {
+    Wire wire(port(),
+              std::string("GET / HTTP/1.1\r\nHost: localhost\r\nhOST: ") + second + "\r\n\r\n");
+    EXPECT_TRUE(wire.WaitForEnd());
+    EXPECT_TRUE(wire.received().starts_with("HTTP/1.1 400 ")) << wire.received();
+    EXPECT_EQ(wire.received().find("hello"), std::string::npos);
+  }
 }
 
 TEST_F(HttpServiceTest, SurvivesEndlessHeaders) {
@@ -198,6 +218,35 @@ TEST_F(HttpServiceTest, DropsClientsThatDoNotTakeTheirReply) {
   Wire lazy(port(), "GET /large HTTP/1.1\r\n\r\n");
   EXPECT_TRUE(
       WaitUntil([this] { return counters().requests == 1 && counters().connections == 0; }));
+}
+
+// Whether a client gets a large body whole that it takes steadily, but in more time than a client
+// may take nothing; `request` asks for it. False as well if this machine was busy with other things
+// for as long as that.
+bool GetsItSlowly(const HttpService& service, const char* request, std::size_t size) {
+  constexpr auto kPause = std::chrono::milliseconds(10);
+  constexpr auto kDuration = std::chrono::milliseconds(1500);
+  Wire wire(service.port(), request, 64 * 1024);
+  const std::size_t pieces = kDuration / kPause;
+  for (std::size_t piece = 1; piece <= pieces; ++piece) {
+    if (!wire.WaitForBytes(size * piece / pieces)) return false;
+    std::this_thread::sleep_for(kPause);
+  }
+  return true;
+}
+
+TEST_F(HttpServiceTest, LetsClientsTakeTheirTimeWhileTheyTakeSomething) {
+  ViewServerOptions options = QuickOptions();
+  options.write_timeout = 0.8;
+  Start(options);
+  for (const char* request :
+       {"GET /large HTTP/1.1\r\n\r\n", "GET /long-snapshot HTTP/1.1\r\n\r\n"}) {
+    bool done = false;
+    for (int attempt = 0; attempt < 10 && !done; ++attempt) {
+      done = GetsItSlowly(*service_, request, 20'000'000);
+    }
+    EXPECT_TRUE(done) << request;
+  }
 }
 
 TEST_F(HttpServiceTest, TurnsAwayMoreConnectionsThanItTakes) {

@@ -4,7 +4,6 @@
 
 #include <thread>
 
-#include "backend/base/error.h"
 #include "tests/apps/online/wait_until.h"
 #include "tests/apps/view/round_trip.h"
 #include "tests/apps/view/wire.h"
@@ -18,9 +17,9 @@ using test_support::RoundTrip;
 using test_support::WaitUntil;
 using test_support::Wire;
 
-constexpr const char* kFollow = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
+constexpr const char* kFollowServer = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
-ViewServerOptions QuickOptions() {
+ViewServerOptions QuickServerOptions() {
   ViewServerOptions options;
   options.batch_interval = 0.002;
   return options;
@@ -30,7 +29,7 @@ class ViewServerTest : public testing::Test {
  protected:
   LiveMap map_;
   PublishedFiles files_;
-  ViewServer server_{QuickOptions(), &map_, &files_};
+  ViewServer server_{QuickServerOptions(), &map_, &files_};
 };
 
 TEST_F(ViewServerTest, ServesPageFilesAndTiles) {
@@ -49,9 +48,32 @@ TEST_F(ViewServerTest, ServesPageFilesAndTiles) {
   EXPECT_EQ(AskOnce(server_.port(), {.headers = {{"Host", "evil.example"}}}).status, 403);
 }
 
+TEST(ViewServerAddress, AnswersUnderTheAddressThatItAnnounces) {
+  const LiveMap map;
+  const PublishedFiles files;
+  for (const char* host : {"127.0.0.2", "localhost"}) {
+    ViewServerOptions options = QuickServerOptions();
+    options.host = host;
+    const ViewServer server(options, &map, &files);
+    std::string announced = server.url();
+    ASSERT_TRUE(announced.starts_with("http://") && announced.ends_with("/")) << announced;
+    announced = announced.substr(7, announced.size() - 8);
+    if (announced.starts_with('[')) continue;  // the client of these tests speaks IPv4 only
+    const std::string address = announced.substr(0, announced.find(':'));
+    const auto status_for = [&](const std::string& name) {
+      return test_support::HttpClient(server.port(), address)
+          .Ask({.headers = {{"Host", name}}})
+          .status;
+    };
+    EXPECT_EQ(status_for(announced), 200);
+    EXPECT_EQ(status_for(std::string(host) + ":80"), 200);
+    EXPECT_EQ(status_for("evil.example"), 403);
+  }
+}
+
 TEST_F(ViewServerTest, TellsViewersWhatHappens) {
   RoundTrip trip(9);
-  Wire viewer(server_.port(), kFollow);
+  Wire viewer(server_.port(), kFollowServer);
   ASSERT_TRUE(viewer.WaitFor("event: state\n"));
   ASSERT_TRUE(viewer.WaitFor("\n\n"));
   ASSERT_TRUE(WaitUntil([this] { return server_.counters().viewers == 1; }));
@@ -71,7 +93,7 @@ TEST_F(ViewServerTest, TellsViewersWhatHappens) {
 TEST_F(ViewServerTest, ServesTwentyViewersWhileTheMapGrows) {
   RoundTrip trip(120);
   std::vector<Wire> viewers;
-  for (int i = 0; i < 20; ++i) viewers.emplace_back(server_.port(), kFollow);
+  for (int i = 0; i < 20; ++i) viewers.emplace_back(server_.port(), kFollowServer);
   std::thread mapping([&] {
     for (int scan = 0; scan < trip.scans(); ++scan) {
       if (scan % 30 == 29) trip.MoveNodes(SE2(0.001 * scan, 0.0, 0.0));
@@ -86,59 +108,26 @@ TEST_F(ViewServerTest, ServesTwentyViewersWhileTheMapGrows) {
 
 TEST_F(ViewServerTest, SaysThatItIsOverToThoseWhoAreThereAndThoseWhoCome) {
   const RoundTrip trip(3);
-  Wire early(server_.port(), kFollow);
+  Wire early(server_.port(), kFollowServer);
   ASSERT_TRUE(WaitUntil([this] { return server_.counters().viewers == 1; }));
   server_.Add(trip.Update(0));
   server_.Finish();
   EXPECT_TRUE(early.WaitFor("event: end\n"));
   EXPECT_LT(early.received().find("\"scan\":0,"), early.received().find("event: end\n"));
-  Wire late(server_.port(), kFollow);
+  Wire late(server_.port(), kFollowServer);
   EXPECT_TRUE(late.WaitFor("\"ended\":true"));
 }
 
 TEST_F(ViewServerTest, GivesEachRunAnotherName) {
-  ViewServer other(QuickOptions(), &map_, &files_);
-  Wire a(server_.port(), kFollow);
-  Wire b(other.port(), kFollow);
+  ViewServer other(QuickServerOptions(), &map_, &files_);
+  Wire a(server_.port(), kFollowServer);
+  Wire b(other.port(), kFollowServer);
   ASSERT_TRUE(a.WaitFor("\"resolution\""));
   ASSERT_TRUE(b.WaitFor("\"resolution\""));
   const auto run = [](const Wire& wire) {
     return wire.received().substr(wire.received().find("\"run\""), 25);
   };
   EXPECT_NE(run(a), run(b));
-}
-
-TEST(ViewServerOptions, AreReadFromAnAddress) {
-  EXPECT_EQ(ParseViewAddress("8080").host, "127.0.0.1");
-  EXPECT_EQ(ParseViewAddress("8080").port, 8080);
-  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").host, "0.0.0.0");
-  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").port, 80);
-  EXPECT_EQ(ParseViewAddress("[::1]:8080").host, "::1");
-  for (const char* nonsense : {"", "x", "70000", "-1", "localhost", "localhost:", ":80", "1.5",
-                               "host:port", "host:70000"}) {
-    EXPECT_THROW(ParseViewAddress(nonsense), Error) << nonsense;
-  }
-}
-
-TEST(ViewServerOptions, AreRefusedOutOfRange) {
-  const auto is_refused = [](auto change) {
-    ViewServerOptions options;
-    change(&options);
-    try {
-      options.Validate();
-    } catch (const Error& error) {
-      return error.code() == ErrorCode::kUsage;
-    }
-    return false;
-  };
-  EXPECT_NO_THROW(ViewServerOptions().Validate());
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->host = ""; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->port = 65536; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->max_connections = 0; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->request_timeout = 0.0; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->write_timeout = 1e9; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->batch_interval = 0.0; }));
-  EXPECT_TRUE(is_refused([](ViewServerOptions* options) { options->max_backlog = 0; }));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <chrono>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -18,12 +18,25 @@ class Wire {
   explicit Wire(int port) : socket_(Socket::ConnectTo(port)) {}
   Wire(int port, std::string_view request) : Wire(port) { Send(request); }
 
+  /// `buffer`: the bytes that the system may receive before they are read, or twice as many.
+  Wire(int port, std::string_view request, int buffer) : socket_(Socket::ConnectTo(port, buffer)) {
+    Send(request);
+  }
+
   Socket& socket() { return socket_; }
   bool Send(std::string_view bytes) const { return socket_.Send(bytes); }
 
   /// Reads until `text` has come; false if it does not, or the other end closes before.
   bool WaitFor(std::string_view text) {
     while (received_.find(text) == std::string::npos) {
+      if (!ReadMore()) return false;
+    }
+    return true;
+  }
+
+  /// Reads until so many bytes have come; false if they do not.
+  bool WaitForBytes(std::size_t count) {
+    while (received_.size() < count) {
       if (!ReadMore()) return false;
     }
     return true;
