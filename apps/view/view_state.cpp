@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxPoses = 64;     // in one batch
 constexpr std::size_t kMaxRefused = 200;  // remembered
-constexpr double kMaxStep = 5.0;  // metres; nodes farther apart than this begin a new session
+constexpr double kMaxStep = 5.0;  // metres; a robot that is this far off begins a new session
 
 // JSON knows no NaN and no infinity.
 std::string Number(double value, int decimals) {
@@ -77,10 +77,30 @@ void ViewState::TakeScan(const OnlineUpdate& update) {
   const TrackedScan& tracked = update.tracked;
   scans_ = std::max(scans_, std::int64_t{tracked.scan} + 1);
   if (!tracked.matched) ++unmatched_;
+  travelled_ += StepTo(update);
+  last_place_ = update.place;
   if (tracked.node >= static_cast<int>(nodes_.size())) AddNode(tracked.T_map_robot);
   last_pose_ = PoseJson(update);
   poses_.push_back(last_pose_);
   if (poses_.size() > kMaxPoses) poses_.pop_front();
+}
+
+/// How far the robot has moved since the last scan, metres. Both ends are taken from the graph as
+/// it is now: a correction of the graph moves both, and is no motion of the robot.
+double ViewState::StepTo(const OnlineUpdate& update) const {
+  if (!last_place_ || last_place_->node < 0) return 0.0;
+  const auto node = static_cast<std::size_t>(last_place_->node);
+  SE2 T_map_node;
+  if (update.nodes != nullptr && node < update.nodes->poses.size()) {
+    T_map_node = update.nodes->poses[node];
+  } else if (node < nodes_.size()) {
+    T_map_node = nodes_[node].pose;
+  } else {
+    return 0.0;
+  }
+  const SE2 T_map_last = T_map_node * last_place_->T_node_robot;
+  const double step = (update.tracked.T_map_robot.translation() - T_map_last.translation()).norm();
+  return step < kMaxStep ? step : 0.0;
 }
 
 std::string ViewState::PoseJson(const OnlineUpdate& update) {
@@ -154,8 +174,10 @@ std::string ViewState::CountersJson() const {
   const std::int64_t accepted = count(ClosureOutcome::kAccepted);
   const std::int64_t pending = count(ClosureOutcome::kPending);
   return fmt::format(
-      R"({{"scans":{},"unmatched":{},"nodes":{},"accepted":{},"pending":{},"refused":{}}})", scans_,
-      unmatched_, nodes_.size(), accepted, pending, tried - accepted - pending);
+      R"({{"scans":{},"unmatched":{},"nodes":{},"accepted":{},"pending":{},"refused":{},)"
+      R"("travelled":{}}})",
+      scans_, unmatched_, nodes_.size(), accepted, pending, tried - accepted - pending,
+      Number(travelled_, 2));
 }
 
 std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool with_moved_nodes) {

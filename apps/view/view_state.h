@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -13,12 +14,12 @@
 
 namespace loopgrid {
 
-/// What a viewer knows: pose, graph, closures, counters. Turns updates into server-sent events, the
-/// text that goes over the wire. All covariances in it are in the map frame. One thread may use an
-/// object at a time.
+/// What a viewer knows: pose, graph, closures, counters. Turns updates into server-sent events, as
+/// text. Their covariances are in the map frame. That of the pose is relative to the map; those of
+/// nodes are as Slam::NodeCovariances() gives them. One thread may use an object at a time.
 class ViewState {
  public:
-  /// `run` tells one run of the program from another; `resolution` is that of the map, metres.
+  /// `run` names this run of the program; `resolution` is that of the map, metres.
   ViewState(std::string run, double resolution);
 
   /// Takes a scan and what it has changed; if its index is negative, only nodes and closures.
@@ -51,6 +52,7 @@ class ViewState {
 
   static std::string PoseJson(const OnlineUpdate& update);
   void TakeScan(const OnlineUpdate& update);
+  double StepTo(const OnlineUpdate& update) const;
   void AddNode(const SE2& pose);
   void TakeNodes(const NodeStates& states);
   void TakeClosure(const Closure& record);
@@ -77,6 +79,8 @@ class ViewState {
 
   std::int64_t scans_ = 0;
   std::int64_t unmatched_ = 0;
+  std::optional<ScanPlace> last_place_;  // of the newest scan
+  double travelled_ = 0.0;               // metres
 };
 
 }  // namespace loopgrid

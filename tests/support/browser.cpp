@@ -49,6 +49,28 @@ pid_t StartDriver(int* output) {
   return child;
 }
 
+// Starts a process that kills a process group once nobody has the other end of `life` open: at the
+// latest when this process has ended, whatever ended it.
+pid_t StartGuardian(pid_t group, int* life) {
+  std::array<int, 2> pipe_ends = {};
+  if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("cannot fork");
+  if (child == 0) {
+    setpgid(0, 0);  // a signal to the group of the tests, as by Ctrl-C, is not for it
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
+    close(pipe_ends[1]);
+    char byte = 0;
+    while (read(pipe_ends[0], &byte, 1) != 0) continue;
+    kill(-group, SIGKILL);
+    _exit(0);
+  }
+  close(pipe_ends[0]);
+  *life = pipe_ends[1];
+  return child;
+}
+
 // "ChromeDriver was started successfully on port 40123."
 int ReadPort(int output) {
   const std::string key = "successfully on port ";
@@ -103,6 +125,7 @@ bool Browser::IsInstalled() { return IsInPath("chromium") && IsInPath("chromedri
 Browser::Browser() {
   int output = -1;
   driver_ = StartDriver(&output);
+  guardian_ = StartGuardian(driver_, &life_);
   client_ = std::make_unique<HttpClient>(ReadPort(output));  // the pipe stays open for what follows
   const json session = Call("POST", "/session", Capabilities(profile_.path().string()));
   session_ = session.at("sessionId").get<std::string>();
@@ -113,7 +136,8 @@ Browser::~Browser() {
     CallSession("DELETE", "");
   } catch (const std::exception&) {  // it is ended all the same
   }
-  kill(-driver_, SIGKILL);
+  close(life_);
+  waitpid(guardian_, nullptr, 0);
   waitpid(driver_, nullptr, 0);
 }
 

@@ -61,6 +61,8 @@ class Browser {
 
   TemporaryDirectory profile_;
   pid_t driver_ = -1;
+  pid_t guardian_ = -1;  // ends the driver and the browser when this process is gone
+  int life_ = -1;        // what the guardian watches: closed here, or with this process
   std::unique_ptr<HttpClient> client_;
   std::string session_;
 };

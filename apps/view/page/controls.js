@@ -2,6 +2,15 @@
 
 const KEY_STEP = 80;       // CSS pixels an arrow key moves the map
 const KEY_ZOOM = 1.25;
+const KEYS_SETTING = 'loopgrid.single-keys';
+
+// The browser may refuse to remember anything.
+function remembered(name) {
+  try { return localStorage.getItem(name); } catch { return null; }
+}
+function remember(name, value) {
+  try { localStorage.setItem(name, value); } catch { /* it holds until the page is closed */ }
+}
 
 class Controls {
   /** `actions`: what buttons and keys do, by name. */
@@ -18,6 +27,10 @@ class Controls {
     byId('zoom-out').addEventListener('click', () => actions.zoom(1 / KEY_ZOOM));
     byId('panel-toggle').addEventListener('click', () => actions.panel());
     addEventListener('keydown', (event) => this.pressKey(event));
+    this.singleKeys = byId('single-keys');
+    this.singleKeys.checked = remembered(KEYS_SETTING) !== 'off';
+    this.singleKeys.addEventListener(
+        'change', () => remember(KEYS_SETTING, this.singleKeys.checked ? 'on' : 'off'));
   }
 
   listenToPointers() {
@@ -63,6 +76,8 @@ class Controls {
 
   pressKey(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || byId('help-dialog').open) return;
+    const isCharacter = event.key.length === 1;   // others have names: 'ArrowLeft'
+    if (isCharacter && !this.singleKeys.checked) return;
     const onControl = event.target.closest?.('button, a, #closures');
     if (onControl && [' ', 'Enter', 'ArrowUp', 'ArrowDown'].includes(event.key)) return;
     const {actions} = this;

@@ -1,12 +1,14 @@
-// Puts the parts together and keeps the picture up to date, at the rate of the display.
+// Puts the parts together and keeps the picture up to date: at the rate of the display while
+// something changes, and not at all while nothing does.
 
 const canvas = byId('view');
 const world = new World();
 const camera = new Camera();
-const tiles = new Tiles();
+const tiles = new Tiles(wakeAfter);
 const scene = new Scene(canvas, camera, tiles);
 let paused = null;        // the world as it was when the picture was paused
 let needsDrawing = true;
+let frameIsRequested = false;
 
 // What tests and the curious may look at.
 window.loopgrid = {
@@ -15,9 +17,22 @@ window.loopgrid = {
   drawn: 0,               // of them, those that changed something
   firstPicture: null,     // milliseconds from the start of loading to the first piece of map
   get world() { return paused ?? world; },
+  live: world,            // as the server tells it, also while the picture is paused
   get paused() { return Boolean(paused); },
   camera, tiles,
 };
+
+/** Asks for a frame. Whatever may change the picture calls it. */
+function wake() {
+  if (frameIsRequested) return;
+  frameIsRequested = true;
+  requestAnimationFrame(drawFrame);
+}
+
+function wakeAfter(milliseconds) {
+  if (milliseconds > 0) setTimeout(wake, milliseconds);
+  else wake();
+}
 
 function setPressed(id, pressed) {
   byId(id).setAttribute('aria-pressed', String(Boolean(pressed)));
@@ -25,6 +40,7 @@ function setPressed(id, pressed) {
 
 function changed() {
   needsDrawing = true;
+  wake();
   setPressed('fit', camera.mode === 'fit');
   setPressed('follow', camera.mode === 'follow');
 }
@@ -105,10 +121,17 @@ function showState() {
   panels.setState(world.ended ? 'ended' : world.pose?.localized === false ? 'lost' : 'live');
 }
 
-new Link({
+// The server has ended: nothing is asked of it any more.
+function leave() {
+  tiles.offline = true;
+  link.close();
+}
+
+const link = new Link({
   events: {
     state: (state) => {
       if (world.takeState(state)) tiles.reset(state.run, state.resolution);
+      tiles.retry();
       tiles.take(state.tiles);
       showState();
     },
@@ -119,7 +142,11 @@ new Link({
     tiles: (event) => tiles.take(event.tiles),
     end: () => { world.ended = true; showState(); ++world.changes; },
   },
-  lost: () => { if (!world.ended) panels.setState('reconnecting'); },
+  handled: wake,
+  lost: () => {
+    if (world.ended) leave();
+    else panels.setState('reconnecting');
+  },
 });
 
 const seen = {world: null, changes: 0, tiles: 0};  // what the picture shows
@@ -128,6 +155,7 @@ let last = performance.now();
 
 function countFrame(now) {
   ++window.loopgrid.frames;
+  if (now - last > 500) Object.assign(second, {start: now, frames: 0});  // it has rested
   ++second.frames;
   if (now - second.start < 1000) return;
   window.loopgrid.fps = second.frames * 1000 / (now - second.start);
@@ -135,27 +163,32 @@ function countFrame(now) {
 }
 
 function drawFrame(now) {
+  frameIsRequested = false;
+  countFrame(now);
   const seconds = Math.min(0.1, (now - last) / 1000);
   last = now;
-  countFrame(now);
   const shown = paused ?? world;
   const level = tiles.levelFor(camera.scale * scene.ratio);
-  if (scene.moveRobot(shown.pose, seconds)) needsDrawing = true;
-  if (camera.step(seconds, scene.robot, tiles.bounds(level))) needsDrawing = true;
+  const robotMoves = scene.moveRobot(shown.pose, seconds);
+  const cameraMoves = camera.step(seconds, scene.robot, tiles.bounds(level));
+  if (robotMoves || cameraMoves) needsDrawing = true;
   if (seen.world !== shown || seen.changes !== shown.changes || seen.tiles !== tiles.changes) {
     Object.assign(seen, {world: shown, changes: shown.changes, tiles: tiles.changes});
     needsDrawing = true;
   }
   if (needsDrawing) {
-    needsDrawing = scene.draw(shown, now);
+    const more = scene.draw(shown, now);
+    needsDrawing = more.motion;
+    // Once the last tiles are here, the server is no longer needed.
+    if (world.ended && !more.tiles) leave();
     ++window.loopgrid.drawn;
     if (window.loopgrid.firstPicture === null && [...tiles.tiles.values()].some((t) => t.picture)) {
       window.loopgrid.firstPicture = now;
     }
   }
-  panels.update(shown, now);
-  requestAnimationFrame(drawFrame);
+  const panelsWait = panels.update(shown, now);
+  if (panelsWait > 0) wakeAfter(panelsWait);
+  if (robotMoves || cameraMoves || needsDrawing) wake();
 }
 
 layOut();
-requestAnimationFrame(drawFrame);

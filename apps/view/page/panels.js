@@ -5,7 +5,7 @@ const STATES = {
   live: 'Live',
   lost: 'Looking for itself in the map',
   reconnecting: 'Reconnecting',
-  ended: 'Ended: the log is over',
+  ended: 'Ended: the log is over, this is its last state',
 };
 const MARKS = {accepted: ['✓', 'closed'], refused: ['✕', 'refused'], pending: ['…', 'open']};
 const LISTED = 60;            // closures, the newest
@@ -43,13 +43,16 @@ class Panels {
     document.title = state === 'live' ? 'loopgrid' : `${STATES[state]} – loopgrid`;
   }
 
+  /** Returns after how many milliseconds it wants to be called again; 0 if it shows everything. */
   update(world, now) {
     const {drawn} = this;
-    if (drawn.world === world && drawn.changes === world.changes) return;
-    if (now - drawn.at < PANEL_INTERVAL && drawn.world === world) return;
+    if (drawn.world === world && drawn.changes === world.changes) return 0;
+    const early = drawn.at + PANEL_INTERVAL - now;
+    if (early > 0 && drawn.world === world) return early;
     this.drawn = {at: now, world, changes: world.changes};
     this.updateFigures(world);
     this.updateClosures(world);
+    return 0;
   }
 
   updateFigures(world) {
@@ -57,7 +60,7 @@ class Panels {
     const latencies = world.latencies.filter(Number.isFinite).sort((a, b) => a - b);
     setText('scans', counters.scans.toLocaleString('en'));
     setText('nodes', counters.nodes.toLocaleString('en'));
-    setText('travelled', metres(world.travelled()));
+    setText('travelled', metres(counters.travelled));
     setText('speed', world.speed > 0.05 && !world.ended ? `${world.speed.toFixed(1)} ×` : '–');
     setText('latency', milliseconds(latencies[latencies.length >> 1]));
     setText('latency-max', milliseconds(latencies[latencies.length - 1]));

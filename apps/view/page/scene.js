@@ -1,5 +1,9 @@
 // Draws the world on the canvas.
 
+// The squared distance from the mean, in sigmas, of a normal distribution in two dimensions is above
+// r^2 with the probability exp(-r^2 / 2).
+const SIGMAS_OF_99 = Math.sqrt(-2 * Math.log(0.01));
+
 /** The colours of the style sheet, for the canvas. */
 function readPalette() {
   const style = getComputedStyle(document.documentElement);
@@ -54,7 +58,7 @@ class Scene {
         Math.abs(theta - before.theta) > 1e-3;
   }
 
-  /** Returns whether there is more to come: tiles on their way, flashes. */
+  /** Returns whether there is more to come: `tiles` that are being fetched, `motion`. */
   draw(world, now) {
     const {context, canvas, palette} = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -67,7 +71,7 @@ class Scene {
     if (world.pose) this.drawRobot(world.pose);
     context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     this.drawScaleBar();
-    return waiting || flashing;
+    return {tiles: waiting, motion: flashing};
   }
 
   // From here on the canvas takes metres.
@@ -143,11 +147,13 @@ class Scene {
     context.fill();
   }
 
-  // The path of a 3 sigma ellipse, metres; nothing if it is none, or smaller than a pixel.
+  // The path of the ellipse, metres, that holds a position with 99 %, from the covariance of its x
+  // and y. False if there is none, or if it is smaller than a pixel.
   ellipse(x, y, xx, xy, yy) {
     const mean = (xx + yy) / 2;
     const spread = Math.hypot((xx - yy) / 2, xy);
-    const [a, b] = [3 * Math.sqrt(mean + spread), 3 * Math.sqrt(Math.max(0, mean - spread))];
+    const a = SIGMAS_OF_99 * Math.sqrt(mean + spread);
+    const b = SIGMAS_OF_99 * Math.sqrt(Math.max(0, mean - spread));
     if (!(a > this.pixels(1))) return false;
     const angle = 0.5 * Math.atan2(2 * xy, xx - yy);
     this.context.moveTo(x + a * Math.cos(angle), y + a * Math.sin(angle));

@@ -1,4 +1,5 @@
-// The map as squares at several scales. Fetches those that are on the screen and have changed.
+// The map as squares at several scales. Fetches those that are on the screen and have changed. Each
+// version of a tile is asked for once; if that fails, it is asked for again after retry().
 
 const TILE_SIDE = 256;         // pixels
 const TILE_LEVELS = 6;
@@ -9,9 +10,12 @@ const GREY_WALL = 0;
 const GREY_FREE = 254;
 
 class Tiles {
-  constructor() {
+  /** `wake(milliseconds)`: draw again after so long, as there will be something new to draw. */
+  constructor(wake) {
+    this.wake = wake;
     this.changes = 0;         // rises with every change
     this.frozen = false;      // what is on the screen stays as it is
+    this.offline = false;     // nothing is fetched
     this.reset('', 0.05);
   }
 
@@ -29,15 +33,20 @@ class Tiles {
       const key = `${level}/${x}/${y}`;
       const tile = this.tiles.get(key);
       if (tile) tile.version = Math.max(tile.version, version);
-      else this.tiles.set(key, {key, level, x, y, version, shown: 0, fetched: 0, used: 0,
-                                fetching: false, picture: null, known: null});
+      else this.tiles.set(key, {key, level, x, y, version, shown: 0, failed: 0, fetched: 0,
+                                used: 0, fetching: false, picture: null, known: null});
     }
     ++this.changes;
   }
 
   /** Colours have changed: all pictures are made anew. */
   repaint() {
-    for (const tile of this.tiles.values()) tile.shown = tile.fetched = 0;
+    for (const tile of this.tiles.values()) tile.shown = tile.fetched = tile.failed = 0;
+  }
+
+  /** The server is there again: what failed may be asked for once more. */
+  retry() {
+    for (const tile of this.tiles.values()) tile.failed = 0;
   }
 
   side(level) {
@@ -65,7 +74,7 @@ class Tiles {
     return box;
   }
 
-  /** Draws what `camera` sees; fetches what is missing. True if some of it is on its way. */
+  /** Draws what `camera` sees and fetches what is missing. True if some of it is still to come. */
   draw(context, camera, ratio, palette, now) {
     const level = this.levelFor(camera.scale * ratio);
     const side = this.side(level);
@@ -80,8 +89,7 @@ class Tiles {
         if (!tile) continue;
         tile.used = now;
         if (tile.shown < tile.version && !(this.frozen && tile.picture)) {
-          waiting = true;
-          this.fetch(tile, palette, now);
+          if (this.fetch(tile, palette, now)) waiting = true;
         }
         this.drawTile(context, camera, ratio, tile);
       }
@@ -89,7 +97,7 @@ class Tiles {
     return waiting;
   }
 
-  // A tile that is not here yet is cut out of a coarser one.
+  // A tile that is not here yet is cut out of a coarser one, or put together from finer ones.
   drawTile(context, camera, ratio, tile) {
     let [picture, sx, sy, size] = [tile.picture, 0, 0, TILE_SIDE];
     for (let up = 1; !picture && tile.level + up < TILE_LEVELS; ++up) {
@@ -99,7 +107,10 @@ class Tiles {
       sx = (tile.x - (px << up)) * size;
       sy = TILE_SIDE - size - (tile.y - (py << up)) * size;
     }
-    if (!picture) return;
+    if (!picture) {
+      this.drawFiner(context, camera, ratio, tile);
+      return;
+    }
     const side = this.side(tile.level);
     const [left, top] = camera.toScreen(tile.x * side, (tile.y + 1) * side);
     const [right, bottom] = camera.toScreen((tile.x + 1) * side, tile.y * side);
@@ -108,14 +119,33 @@ class Tiles {
                       Math.round(right * ratio) - x, Math.round(bottom * ratio) - y);
   }
 
-  async fetch(tile, palette, now) {
-    if (tile.fetching || this.fetches >= MAX_FETCHES) return;
-    if (now - tile.fetched < FETCH_INTERVAL) return;
+  drawFiner(context, camera, ratio, tile) {
+    if (tile.level === 0) return;
+    for (const [dx, dy] of [[0, 0], [1, 0], [0, 1], [1, 1]]) {
+      const key = `${tile.level - 1}/${2 * tile.x + dx}/${2 * tile.y + dy}`;
+      const part = this.tiles.get(key);
+      if (part?.picture) this.drawTile(context, camera, ratio, part);
+      else if (part) this.drawFiner(context, camera, ratio, part);
+    }
+  }
+
+  // True if the tile will come, or may.
+  fetch(tile, palette, now) {
+    if (this.offline || tile.failed >= tile.version) return false;
+    if (tile.fetching || this.fetches >= MAX_FETCHES) return true;
+    const early = tile.fetched + FETCH_INTERVAL - now;
+    if (early > 0) this.wake(early);
+    else this.load(tile, palette, now);
+    return true;
+  }
+
+  async load(tile, palette, now) {
     const {run, tiles} = this;
     const version = tile.version;
     tile.fetching = true;
     tile.fetched = now;
     ++this.fetches;
+    tile.failed = version;    // unless it comes
     try {
       const reply = await fetch(`/tiles/${tile.key}.png?v=${run}.${version}`);
       if (!reply.ok) return;
@@ -124,12 +154,14 @@ class Tiles {
       if (!tile.picture) this.makeRoom();
       this.paint(tile, image, palette);
       tile.shown = version;
+      tile.failed = 0;
       ++this.changes;
     } catch {
-      // The server is gone. When it is back, its state tells what to ask for.
+      // The server is gone. When it is back, it sends its state, and then retry() is called.
     } finally {
       tile.fetching = false;
       if (tiles === this.tiles) --this.fetches;
+      this.wake(0);           // another tile may be waiting for its turn
     }
   }
 

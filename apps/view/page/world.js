@@ -24,7 +24,8 @@ class World {
     this.tailJoined = true;  // no position between the last node and them was forgotten
     this.closures = new Map();  // by id
     this.flashes = new Map();   // closure id -> time of its end
-    this.counters = {scans: 0, unmatched: 0, nodes: 0, accepted: 0, pending: 0, refused: 0};
+    this.counters = {scans: 0, unmatched: 0, nodes: 0, accepted: 0, pending: 0, refused: 0,
+                     travelled: 0};
     this.latencies = [];
     this.clock = null;    // where log time and real time were compared
     this.speed = 0;       // log seconds a second
@@ -117,16 +118,6 @@ class World {
     return Math.max(0, (end - now) / FLASH);
   }
 
-  /** The path along the nodes, metres. */
-  travelled() {
-    let sum = 0;
-    for (let i = 1; i < this.nodes.length; ++i) {
-      const [x, y, , , , , , linked] = this.nodes[i];
-      if (linked) sum += Math.hypot(x - this.nodes[i - 1][0], y - this.nodes[i - 1][1]);
-    }
-    return sum;
-  }
-
   /** A copy that stays as it is. */
   frozen() {
     const copy = Object.assign(Object.create(World.prototype), this);
@@ -144,24 +135,35 @@ function verdict(closure) {
   return ['accepted', 'pending'].includes(closure.outcome) ? closure.outcome : 'refused';
 }
 
-// Follows /events for ever: when the server goes away, it keeps on knocking.
+// Follows /events. When the connection is lost, it tries again until close() is called.
 class Link {
+  /** `handlers`: `events`, a function for each event by name; `handled`, called after each event;
+   *  `lost`, called whenever there is no connection. */
   constructor(handlers) {
     this.handlers = handlers;
     this.wait = 0;
+    this.closed = false;
     this.open();
   }
 
+  close() {
+    this.closed = true;
+    this.source.close();
+  }
+
   open() {
-    const source = new EventSource('/events');
+    if (this.closed) return;
+    const source = this.source = new EventSource('/events');
     for (const [name, handler] of Object.entries(this.handlers.events)) {
       source.addEventListener(name, (event) => {
         this.wait = 0;
         handler(JSON.parse(event.data));
+        this.handlers.handled();
       });
     }
     source.onerror = () => {
       source.close();
+      if (this.closed) return;
       this.handlers.lost();
       this.wait = Math.min(2000, this.wait + 250);
       setTimeout(() => this.open(), this.wait);

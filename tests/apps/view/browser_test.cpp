@@ -5,6 +5,9 @@
 
 #include <chrono>
 #include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "apps/view/view_server.h"
@@ -131,6 +134,15 @@ class BrowserTest : public testing::Test {
     return browser().Run("return " + expression).get<double>();
   }
 
+  // Whether the page stops drawing: no frame in half a second.
+  static bool ComesToRest() {
+    return test_support::WaitUntil([] {
+      const double frames = Number("loopgrid.frames");
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      return Number("loopgrid.frames") == frames;
+    });
+  }
+
   static void Screenshot(const std::string& name) {
     browser().SaveScreenshot(fmt::format("{}/{}.png", LOOPGRID_SCREENSHOTS, name));
   }
@@ -200,10 +212,8 @@ TEST_F(BrowserTest, PausesThePictureButKeepsReceiving) {
   browser().Press({" "});
   ASSERT_EQ(Attribute("pause", "aria-pressed"), "true");
   AddScans(30, 90);
-  // A new viewer would know by now; the page has been told, too, but shows what it showed.
-  ASSERT_TRUE(test_support::WaitUntil([this] { return map_->counters().scans == 90; }));
-  const double frames = Number("loopgrid.frames");
-  ASSERT_TRUE(browser().WaitFor(fmt::format("loopgrid.frames > {}", frames + 20)));
+  ASSERT_TRUE(browser().WaitFor("loopgrid.live.pose.scan === 89"));
+  ASSERT_TRUE(ComesToRest());
   EXPECT_EQ(Number("loopgrid.world.pose.scan"), 29);
   EXPECT_EQ(browser().Run("return document.getElementById('scans').textContent"), "30");
   browser().Press({" "});
@@ -234,6 +244,59 @@ TEST_F(BrowserTest, ObeysTheKeyboard) {
   Screenshot("help");
   browser().Press({kEscape});
   EXPECT_TRUE(browser().WaitFor("!document.getElementById('help-dialog').open"));
+}
+
+TEST_F(BrowserTest, LeavesSingleKeysAloneWhenTheyAreSwitchedOffAndRemembersIt) {
+  browser().Press({"?"});
+  browser().Click("#single-keys");
+  browser().Press({kEscape, "f", "e", " "});
+  for (int visit = 0; visit < 2; ++visit) {
+    for (const char* button : {"follow", "ellipses", "pause"}) {
+      EXPECT_EQ(Attribute(button, "aria-pressed"), "false") << button;
+    }
+    const double x = Number("loopgrid.camera.x");
+    browser().Press({kArrowLeft});
+    EXPECT_LT(Number("loopgrid.camera.x"), x) << "arrow keys are no single keys";
+    browser().Open(server_->url() + "?again");
+    ASSERT_TRUE(browser().WaitFor("window.loopgrid && loopgrid.frames > 0"));
+    browser().Press({"f", "e", " "});
+  }
+  browser().Click("#help");
+  browser().Click("#single-keys");
+  browser().Press({kEscape, "f"});
+  EXPECT_EQ(Attribute("follow", "aria-pressed"), "true");
+}
+
+TEST_F(BrowserTest, ShowsHowFarTheRobotHasTravelled) {
+  AddScans(0, 30);
+  ASSERT_TRUE(WaitForScan(29));
+  // 29 sides of a polygon with 24 corners, 1.9 m from its middle; every third corner is a node.
+  EXPECT_EQ(browser().Run("return document.getElementById('travelled').textContent"), "14.4 m");
+}
+
+TEST_F(BrowserTest, RestsWhileNothingChanges) {
+  AddScans(0, 30);
+  ASSERT_TRUE(WaitForScan(29));
+  EXPECT_TRUE(ComesToRest());
+  AddScans(30, 31);
+  EXPECT_TRUE(WaitForScan(30)) << "it does not wake up";
+  EXPECT_TRUE(ComesToRest());
+}
+
+TEST_F(BrowserTest, AsksForNothingAfterTheEnd) {
+  AddScans(0, 60);
+  ASSERT_TRUE(WaitForScan(59));
+  server_->Finish();
+  ASSERT_TRUE(browser().WaitFor("document.getElementById('state').dataset.state === 'ended'"));
+  ASSERT_TRUE(ComesToRest());
+  server_.reset();
+  EXPECT_GT(Number(PixelsOf("free")), 10000);
+  browser().TakeHosts();
+  browser().Press({"-", "-", "-", "-", "-", "-"});  // where other tiles would be fetched
+  ASSERT_TRUE(ComesToRest());
+  EXPECT_EQ(browser().TakeHosts(), std::set<std::string>());
+  EXPECT_GT(Number(PixelsOf("free")), 100) << "the map is drawn from the tiles that are there";
+  EXPECT_EQ(Attribute("state", "data-state"), "ended");
 }
 
 TEST_F(BrowserTest, FitsAPhone) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -225,6 +226,36 @@ TEST(ViewState, BreaksThePathWhereTheRobotCannotHaveGone) {
   EXPECT_EQ(nodes[0].back(), 0);
   EXPECT_EQ(nodes[1].back(), 1);
   EXPECT_EQ(nodes[2].back(), 0);
+}
+
+TEST(ViewState, CountsTheWholePathOfTheRobotNotOnlyItsNodes) {
+  ViewState state("a", 0.05);
+  // A square with a side of 2 m, again and again: only its first corner is a node.
+  const SE2 corners[] = {SE2(0, 0, 0), SE2(2, 0, 0), SE2(2, 2, 0), SE2(0, 2, 0)};
+  for (int scan = 0; scan < 9; ++scan) {
+    OnlineUpdate update;
+    update.tracked.scan = scan;
+    update.tracked.node = scan == 0 ? 0 : -1;
+    update.tracked.T_map_robot = corners[scan % 4];
+    update.place.T_node_robot = corners[scan % 4];
+    state.Apply(update);
+  }
+  EXPECT_EQ(SnapshotOf(state)["counters"]["travelled"], 16.0);
+}
+
+TEST(ViewState, DoesNotTakeCorrectionsOfTheMapForMotion) {
+  ViewState state("a", 0.05);
+  for (int scan = 0; scan < 4; ++scan) {
+    const SE2 T_map_node(0.0, scan < 2 ? 0.0 : 3.0, 0.0);  // the third scan closes a loop
+    OnlineUpdate update;
+    update.tracked.scan = scan;
+    update.tracked.node = scan == 0 ? 0 : -1;
+    update.place = {0, SE2(scan, 0.0, 0.0)};
+    update.tracked.T_map_robot = T_map_node * update.place.T_node_robot;
+    if (scan == 2) update.nodes = std::make_shared<NodeStates>(NodeStates{{T_map_node}, {}});
+    state.Apply(update);
+  }
+  EXPECT_EQ(SnapshotOf(state)["counters"]["travelled"], 3.0);
 }
 
 TEST(ViewState, TellsTheEndOnce) {
