@@ -7,13 +7,13 @@ packages=(
   build-essential cmake ninja-build
   libeigen3-dev libsuitesparse-dev libmetis-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   libboost-dev zlib1g-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
+  libopencv-core-dev libopencv-imgproc-dev libpng-dev
   libmrpt-obs-dev mrpt-common
 )
 if [[ "${1:-}" == tests ]]; then
   packages+=(
     clang libclang-rt-14-dev clang-format
-    libgtest-dev libgmock-dev libbenchmark-dev libceres-dev
+    libgtest-dev libgmock-dev libbenchmark-dev libceres-dev libopencv-imgcodecs-dev
     chromium chromium-driver
   )
 elif [[ "${1:-}" == tidy ]]; then

@@ -2,38 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <cstddef>
 #include <utility>
-#include <vector>
+
+#include "mapping/png_encoder.h"
 
 namespace loopgrid {
 namespace {
 
-// OpenCV's drawing takes whole numbers of 1/16 pixel.
-constexpr int kSubpixelBits = 4;
-constexpr std::int64_t kSubpixels = 1 << kSubpixelBits;
+constexpr int kChannels = 3;
 
-// No sane point is farther from the picture; in subpixels or pixels.
+// Coordinates are limited to this before they are rounded to integers; in pixels.
 constexpr double kFarthest = 1e9;
-
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double kCapitalHeight = 21.0;  // of that font at scale 1, pixels
-
-cv::Scalar ToScalar(Color color) { return {1.0 * color.blue, 1.0 * color.green, 1.0 * color.red}; }
-
-cv::Rect ToRect(const PixelArea& area) { return {area.left, area.top, area.width, area.height}; }
-
-double FontScale(int height) { return height / kCapitalHeight; }
-
-// Strokes as thick as the letters are high ask for.
-int FontThickness(int height) { return std::max(1, height / 10); }
-
-std::uint8_t Mix(std::uint8_t a, std::uint8_t b, double share) {
-  return static_cast<std::uint8_t>(std::lround(a + share * (b - a)));
-}
 
 // Cuts the segment to 0 <= x < width, 0 <= y < height (Liang and Barsky 1984); false if nothing is
 // left of it.
@@ -61,50 +41,46 @@ bool Clip(double width, double height, Eigen::Vector2d* from, Eigen::Vector2d* t
 
 }  // namespace
 
-Color Mix(Color a, Color b, double share) {
-  return {Mix(a.red, b.red, share), Mix(a.green, b.green, share), Mix(a.blue, b.blue, share)};
+Canvas::Canvas(int width, int height)
+    : width_(width),
+      height_(height),
+      pixels_(kChannels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 255) {
 }
 
-Canvas::Canvas(int width, int height)
-    : image_(std::make_unique<cv::Mat>(height, width, CV_8UC3, ToScalar(kWhite))) {}
-Canvas::~Canvas() = default;
-Canvas::Canvas(Canvas&&) noexcept = default;
-Canvas& Canvas::operator=(Canvas&&) noexcept = default;
+const std::uint8_t* Canvas::PixelAt(int x, int y) const {
+  return pixels_.data() +
+         kChannels * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                      static_cast<std::size_t>(x));
+}
 
-int Canvas::width() const { return image_->cols; }
-int Canvas::height() const { return image_->rows; }
+std::uint8_t* Canvas::PixelAt(int x, int y) {
+  return const_cast<std::uint8_t*>(std::as_const(*this).PixelAt(x, y));
+}
+
+PixelBlock Canvas::Block(const PixelArea& area) {
+  return {.first = PixelAt(area.left, area.top),
+          .width = area.width,
+          .height = area.height,
+          .row_bytes = kChannels * static_cast<std::size_t>(width_)};
+}
 
 Color Canvas::At(int x, int y) const {
-  const auto& pixel = image_->at<cv::Vec3b>(y, x);
-  return {pixel[2], pixel[1], pixel[0]};
+  const std::uint8_t* pixel = PixelAt(x, y);
+  return {pixel[0], pixel[1], pixel[2]};
 }
 
 void Canvas::SetPixel(int x, int y, Color color) {
-  image_->at<cv::Vec3b>(y, x) = {color.blue, color.green, color.red};
+  std::uint8_t* pixel = PixelAt(x, y);
+  pixel[0] = color.red;
+  pixel[1] = color.green;
+  pixel[2] = color.blue;
 }
 
 void Canvas::DrawLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                       Color color, int thickness) {
   if (!from.allFinite() || !to.allFinite()) return;
-  // Cut to the area with a margin for the ends of thick lines. clipLine() does it in 64 bits, which
-  // line() would not.
-  const std::int64_t margin = kSubpixels * (2 + thickness);
-  const auto to_point = [&area, margin](const Eigen::Vector2d& p) {
-    // To OpenCV (0, 0) is the middle of the first pixel.
-    const Eigen::Vector2d inside = p - Eigen::Vector2d(area.left + 0.5, area.top + 0.5);
-    const Eigen::Vector2d scaled =
-        (static_cast<double>(kSubpixels) * inside).cwiseMax(-kFarthest).cwiseMin(kFarthest);
-    return cv::Point2l(std::lround(scaled.x()) + margin, std::lround(scaled.y()) + margin);
-  };
-  cv::Point2l a = to_point(from);
-  cv::Point2l b = to_point(to);
-  const cv::Size2l size(kSubpixels * area.width + 2 * margin,
-                        kSubpixels * area.height + 2 * margin);
-  if (!cv::clipLine(size, a, b)) return;
-  const cv::Point2l corner(margin, margin);
-  cv::Mat part = (*image_)(ToRect(area));
-  cv::line(part, cv::Point(a - corner), cv::Point(b - corner), ToScalar(color), thickness,
-           cv::LINE_AA, kSubpixelBits);
+  const Eigen::Vector2d corner(area.left, area.top);
+  DrawingPen().DrawLine(Block(area), from - corner, to - corner, color, thickness);
 }
 
 void Canvas::DrawFineLine(const PixelArea& area, const Eigen::Vector2d& from,
@@ -140,22 +116,21 @@ void Canvas::DrawFineLine(const PixelArea& area, const Eigen::Vector2d& from,
 }
 
 void Canvas::FillRectangle(const PixelArea& area, Color color) {
-  (*image_)(ToRect(area)).setTo(ToScalar(color));
+  for (int y = area.top; y < area.top + area.height; ++y) {
+    for (int x = area.left; x < area.left + area.width; ++x) SetPixel(x, y, color);
+  }
 }
 
 void Canvas::DrawText(int x, int y, int height, const std::string& text, Color color) {
-  cv::putText(*image_, text, {x, y}, kFont, FontScale(height), ToScalar(color),
-              FontThickness(height), cv::LINE_AA);
+  DrawingPen().DrawText(Block({0, 0, width_, height_}), x, y, height, text, color);
 }
 
 int Canvas::TextWidth(int height, const std::string& text) {
-  return cv::getTextSize(text, kFont, FontScale(height), FontThickness(height), nullptr).width;
+  return DrawingPen().TextWidth(height, text);
 }
 
 std::string Canvas::EncodePng() const {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", *image_, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
-  return {bytes.begin(), bytes.end()};
+  return loopgrid::EncodePng(width_, height_, PixelFormat::kRedGreenBlue, pixels_);
 }
 
 }  // namespace loopgrid

@@ -2,28 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <vector>
 
-namespace cv {
-class Mat;
-}
+#include "mapping/color.h"
+#include "mapping/pen.h"
 
 namespace loopgrid {
-
-struct Color {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-
-  bool operator==(const Color&) const = default;
-};
-
-inline constexpr Color kBlack{0, 0, 0};
-inline constexpr Color kWhite{255, 255, 255};
-
-/// The colour on the way from `a` (share 0) to `b` (share 1).
-Color Mix(Color a, Color b, double share);
 
 /// A rectangle of pixels.
 struct PixelArea {
@@ -38,12 +23,9 @@ struct PixelArea {
 class Canvas {
  public:
   Canvas(int width, int height);
-  ~Canvas();
-  Canvas(Canvas&&) noexcept;
-  Canvas& operator=(Canvas&&) noexcept;
 
-  int width() const;
-  int height() const;
+  int width() const { return width_; }
+  int height() const { return height_; }
 
   Color At(int x, int y) const;
   void SetPixel(int x, int y, Color color);
@@ -69,7 +51,13 @@ class Canvas {
   std::string EncodePng() const;
 
  private:
-  std::unique_ptr<cv::Mat> image_;
+  const std::uint8_t* PixelAt(int x, int y) const;
+  std::uint8_t* PixelAt(int x, int y);
+  PixelBlock Block(const PixelArea& area);
+
+  int width_;
+  int height_;
+  std::vector<std::uint8_t> pixels_;  // red, green, blue; row-major, the first row is the top
 };
 
 }  // namespace loopgrid

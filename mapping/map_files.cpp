@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
+#include "mapping/png_encoder.h"
 
 namespace loopgrid {
 namespace {
@@ -30,16 +29,6 @@ std::uint8_t GreyOf(CellState state) {
 
 // What an image shows: one unknown cell at the origin if there is nothing to show.
 CellBox PicturedBox(const CellBox& seen) { return seen.empty() ? CellBox{0, 0, 1, 1} : seen; }
-
-std::string Encode(const GreyImage& image, const char* extension,
-                   const std::vector<int>& parameters) {
-  // OpenCV takes a pointer to non-const but does not write.
-  const cv::Mat view(image.height, image.width, CV_8UC1,
-                     const_cast<std::uint8_t*>(image.pixels.data()));
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, view, bytes, parameters);
-  return {bytes.begin(), bytes.end()};
-}
 
 }  // namespace
 
@@ -78,10 +67,14 @@ GreyImage DrawMap(const OccupancyGrid& grid) {
 }
 
 std::string EncodePng(const GreyImage& image) {
-  return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 6});
+  return EncodePng(image.width, image.height, PixelFormat::kGrey, image.pixels);
 }
 
-std::string EncodePgm(const GreyImage& image) { return Encode(image, ".pgm", {}); }
+std::string EncodePgm(const GreyImage& image) {
+  std::string bytes = fmt::format("P5\n{} {}\n255\n", image.width, image.height);
+  bytes.append(image.pixels.begin(), image.pixels.end());
+  return bytes;
+}
 
 std::string MapYaml(const OccupancyGrid& grid, std::string_view image_name) {
   return MapYaml(PicturedBox(grid.SeenBox()), grid.resolution(), image_name);

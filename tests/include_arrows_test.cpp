@@ -63,6 +63,8 @@ const std::vector<Room>& Rooms() {
       {"apps/output", {"apps/cli", "frontend/", "mapping", "backend/"}},
       {"apps/settings", {"apps/cli", "frontend/", "mapping", "backend/"}},
       {"apps/net", {"backend/base"}},
+      {"apps/modules",
+       {"frontend/log/rawlog", "frontend/log/observation", "mapping", "backend/base"}},
       {"apps/live", {"apps/output", "apps/settings", "frontend/", "mapping", "backend/"}},
       {"apps/view",
        {"apps/live", "apps/net", "apps/output", "apps/cli", "frontend/", "mapping", "backend/"}},

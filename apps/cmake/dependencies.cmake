@@ -1,12 +1,6 @@
-# The libraries that loopgrid is built on, found the same way by this build and by the installed
-# package's config file. Some of Debian's packages bring no CMake config of their own (OpenCV's is
-# in the package with all of its modules), so they get targets here: loopgrid_deps::...
-
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
-find_package(fmt REQUIRED)
-find_package(Threads REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(mrpt-obs REQUIRED)
+# The libraries that loopgrid's LOOPGRID_COMPONENTS are built on, found the same way by this build and
+# by the installed package's config file. Some of Debian's packages bring no CMake config of their own
+# (OpenCV's is in the package with all of its modules), so they get targets here: loopgrid_deps::...
 
 # loopgrid_find_library(NAME HEADER PATH_SUFFIX...): loopgrid_deps::NAME for lib<name>.
 function(loopgrid_find_library name header)
@@ -22,19 +16,20 @@ function(loopgrid_find_library name header)
     INTERFACE_INCLUDE_DIRECTORIES "${LOOPGRID_${name}_INCLUDE_DIR}")
 endfunction()
 
+# backend
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 loopgrid_find_library(amd amd.h suitesparse)
 loopgrid_find_library(metis metis.h)
 
-if(NOT TARGET loopgrid_deps::opencv)
-  find_path(LOOPGRID_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-  add_library(loopgrid_deps::opencv INTERFACE IMPORTED)
-  set_target_properties(loopgrid_deps::opencv PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${LOOPGRID_OPENCV_INCLUDE_DIR}")
-  foreach(module imgcodecs imgproc core)
-    find_library(LOOPGRID_OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
-    mark_as_advanced(LOOPGRID_OPENCV_${module}_LIBRARY)
-    set_property(TARGET loopgrid_deps::opencv APPEND PROPERTY
-      INTERFACE_LINK_LIBRARIES "${LOOPGRID_OPENCV_${module}_LIBRARY}")
-  endforeach()
-  mark_as_advanced(LOOPGRID_OPENCV_INCLUDE_DIR)
+if("mapping" IN_LIST LOOPGRID_COMPONENTS)
+  find_package(PNG REQUIRED)
+  loopgrid_find_library(opencv_core opencv2/core.hpp opencv4)
+  loopgrid_find_library(opencv_imgproc opencv2/imgproc.hpp opencv4)
+endif()
+
+if("frontend" IN_LIST LOOPGRID_COMPONENTS)
+  find_package(mrpt-obs REQUIRED)
 endif()

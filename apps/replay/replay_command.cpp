@@ -16,7 +16,7 @@
 #include "apps/replay/replay_schedule.h"
 #include "backend/base/error.h"
 #include "frontend/log/carmen/carmen_line.h"
-#include "frontend/log/rawlog/rawlog_reader.h"
+#include "frontend/log/rawlog/rawlog_format.h"
 
 namespace loopgrid {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -9,7 +10,9 @@
 #include "backend/base/line_reader.h"
 #include "frontend/log/carmen/carmen_format.h"
 #include "frontend/log/carmen/carmen_interpreter.h"
-#include "frontend/log/rawlog/rawlog_reader.h"
+#include "frontend/log/observation/log_reader.h"
+#include "frontend/log/rawlog/open_rawlog.h"
+#include "frontend/log/rawlog/rawlog_format.h"
 
 namespace loopgrid {
 namespace {
@@ -70,9 +73,9 @@ void CorrectedLogWriter::Write(std::string_view text) {
 }
 
 CorrectedLogStatistics CorrectedLogWriter::FromRawlog(InputFile input) {
-  RawlogReader reader(std::move(input), {});
+  const std::unique_ptr<LogReader> reader = OpenRawlog(std::move(input), {});
   Observation observation;
-  while (reader.Next(&observation)) {
+  while (reader->Next(&observation)) {
     const auto& [T_map_robot, T_robot_laser] = scans_->Next();
     if (!had_scan_) {
       start_ = observation.timestamp;
@@ -82,7 +85,7 @@ CorrectedLogStatistics CorrectedLogWriter::FromRawlog(InputFile input) {
     Write(CarmenRobotLaserLine(true, observation, T_map_robot * T_robot_laser,
                                observation.timestamp - start_));
   }
-  statistics_.left_out = reader.statistics().malformed;
+  statistics_.left_out = reader->statistics().malformed;
   return statistics_;
 }
 

@@ -7,7 +7,8 @@
 #include "backend/base/input_file.h"
 #include "backend/base/line_reader.h"
 #include "frontend/log/carmen/carmen_reader.h"
-#include "frontend/log/rawlog/rawlog_reader.h"
+#include "frontend/log/rawlog/open_rawlog.h"
+#include "frontend/log/rawlog/rawlog_format.h"
 
 namespace loopgrid {
 
@@ -15,7 +16,7 @@ std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptio
   InputFile file(path);
   const std::string_view start = file.Peek(4096);
   if (start.empty()) throw Error(ErrorCode::kInput, path + ": is empty");
-  if (LooksLikeRawlog(start)) return std::make_unique<RawlogReader>(std::move(file), options);
+  if (LooksLikeRawlog(start)) return OpenRawlog(std::move(file), options);
   if (start.find('\0') != start.npos) {
     throw Error(ErrorCode::kInput, path + ": is neither a CARMEN log nor an MRPT rawlog");
   }

@@ -14,7 +14,7 @@
 #include "backend/base/error.h"
 #include "backend/base/line_reader.h"
 #include "frontend/log/carmen/carmen_interpreter.h"
-#include "frontend/log/rawlog/rawlog_reader.h"
+#include "frontend/log/rawlog/rawlog_format.h"
 
 namespace loopgrid {
 namespace {

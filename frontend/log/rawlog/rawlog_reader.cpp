@@ -282,17 +282,4 @@ const LogStatistics& RawlogReader::statistics() const { return impl_->statistics
 
 double RawlogReader::progress() const { return impl_->progress(); }
 
-// An object begins with the length of its class's name (with the highest bit set, or in old files
-// without it and as 32 bits) and the name, maybe with its namespace.
-bool LooksLikeRawlog(std::string_view start) {
-  if (start.size() < 8) return false;
-  const auto first = static_cast<unsigned char>(start[0]);
-  std::string_view name = start.substr(1);
-  if (first < 0x80) {
-    if (start.substr(1, 3) != std::string_view("\0\0\0", 3)) return false;
-    name = start.substr(4);
-  }
-  return IsMrptClassName(name.substr(0, first & 0x7FU));
-}
-
 }  // namespace loopgrid

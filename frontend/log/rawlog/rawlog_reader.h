@@ -1,15 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
 
 #include "backend/base/input_file.h"
 #include "frontend/log/observation/log_reader.h"
 
 namespace loopgrid {
-
-/// Whether a file that begins so is a stream of MRPT objects (unpacked).
-bool LooksLikeRawlog(std::string_view start);
 
 /// Reads MRPT rawlogs: pairs of action and sensory frame, whose odometry increments are added up
 /// from the origin, and plain streams of observations with absolute odometry. Of several lasers the

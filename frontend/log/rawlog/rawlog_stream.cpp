@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "backend/base/error.h"
+#include "frontend/log/rawlog/rawlog_format.h"
 
 namespace loopgrid {
 namespace {
@@ -15,14 +16,6 @@ constexpr std::uint32_t kMostReadings = 1U << 20;
 bool Contains(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
 
 }  // namespace
-
-bool IsMrptClassName(std::string_view text) {
-  if (text == "nullptr") return true;
-  const bool begins_well = text.substr(0, 6) == "mrpt::" || text.substr(0, 1) == "C";
-  constexpr std::string_view kAllowed =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:<>,";
-  return text.size() > 3 && begins_well && text.find_first_not_of(kAllowed) == text.npos;
-}
 
 RawlogStream::RawlogStream(InputFile file, bool (*is_known)(const std::string&))
     : file_(std::move(file)), is_known_(is_known) {}

@@ -9,9 +9,6 @@
 
 namespace loopgrid {
 
-/// Whether a text can be the name of a class in a stream of MRPT objects.
-bool IsMrptClassName(std::string_view text);
-
 /// The stream that MRPT reads objects from, with checks. MRPT does not check a file: it goes on
 /// with whatever was in memory where bytes are missing, and crashes on null pointers and on
 /// allocations that fail. So a read here gives all the bytes asked for or throws. It also follows

@@ -1,0 +1,9 @@
+// A module of a version that never was.
+extern "C" {
+
+extern const char loopgrid_module_version[];
+const char loopgrid_module_version[] = "0.0.1";
+
+int loopgrid_answer();
+int loopgrid_answer() { return 42; }
+}
