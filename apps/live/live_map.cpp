@@ -18,7 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Updates, or scans to redraw, between two looks at the clock: some milliseconds of work.
+// So many updates are taken, or scans drawn anew, before the clock is looked at: a few milliseconds
+// of work.
 constexpr std::size_t kSlice = 32;
 
 // What is kept of an update.
@@ -119,7 +120,7 @@ class LiveMap::Impl {
     return hurrying_ > 0;
   }
 
-  // Something that is due at a certain time.
+  // Whether something has to be done once its time has come.
   bool HasDuties() const { return has_unpublished_ || map_.IsOutdated(); }
 
   bool IsStopping() const {
@@ -127,7 +128,7 @@ class LiveMap::Impl {
     return stopping_;
   }
 
-  // The number of all updates taken so far.
+  // Takes some updates. Returns the number of all updates taken so far.
   std::int64_t TakeSlice() {
     std::deque<Change> slice;
     {
@@ -181,17 +182,17 @@ class LiveMap::Impl {
   const LiveMapOptions options_;
   MapTiles tiles_;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members up to counters_
   std::condition_variable news_;
   std::condition_variable current_;
   std::deque<Change> queue_;
   std::int64_t added_ = 0;
-  std::int64_t shown_ = 0;  // of `added_`
+  std::int64_t shown_ = 0;  // so many of the added updates are in the picture
   int hurrying_ = 0;        // threads that wait for the picture
   bool stopping_ = false;
   Counters counters_;
 
-  // Of the thread alone.
+  // Only the thread uses these.
   MovingMap map_;
   std::int64_t taken_ = 0;
   std::int64_t redraws_ = 0;

@@ -62,8 +62,8 @@ MapTiles::Tile* MapTiles::FindOrAdd(const TileId& id) {
   return &tile;
 }
 
-// `cells` are the pixels of `part`, which is within the tile. Nothing but unknown cells makes no
-// tile.
+// `cells` are the pixels of `part`, which is within the tile. If all of them are unknown, no tile
+// is made for them.
 bool MapTiles::TakeCells(const TileId& id, const CellBox& part,
                          const std::vector<std::uint8_t>& cells) {
   const std::lock_guard lock(mutex_);
@@ -151,7 +151,8 @@ std::shared_ptr<const std::string> MapTiles::Png(const TileId& id, std::uint64_t
       image.pixels.insert(image.pixels.end(), row, row + kTileSide);
     }
   }
-  auto png = std::make_shared<const std::string>(EncodePng(image));  // takes a while: not locked
+  auto png =
+      std::make_shared<const std::string>(EncodePng(image));  // without the lock: it takes a while
   const std::lock_guard lock(mutex_);
   Tile& tile = tiles_.at(id);
   if (tile.version == drawn) tile.png = png;

@@ -14,8 +14,9 @@
 
 namespace loopgrid {
 
-/// Which square of the map: kTileSide pixels a side, each of 2^level cells. Its lower left corner
-/// is at (x, y) * kTileSide * 2^level cells, whatever the size of the map.
+/// Names a square of the map with kTileSide pixels on each side, where a pixel is 2^level cells
+/// wide. Its lower left corner is at cell (x, y) * kTileSide * 2^level, whatever the size of the
+/// map.
 struct TileId {
   int level = 0;  ///< 0: a pixel a cell, up to kTileLevels - 1
   int x = 0;
@@ -33,10 +34,10 @@ struct TileVersion {
   std::uint64_t version = 0;
 };
 
-/// A map as pixels, cut into squares at several scales, so that who watches it fetches only what
-/// has changed. On coarser levels a pixel is a wall if any of its cells is one, else free if any
-/// is. Takes 1.4 bytes a cell where anything was seen, and the PNG of each tile that was asked for.
-/// All methods may be called from any thread.
+/// A map as pixels, cut into squares at several scales, so that a viewer fetches only what has
+/// changed. On coarser levels a pixel is a wall if any of its cells is a wall, else free if any is
+/// free. Takes 1.4 bytes for each cell of the squares in which anything was seen, and the PNG file
+/// of each tile that was asked for. All methods may be called from any thread.
 class MapTiles {
  public:
   /// Takes over the cells of `box`. The version of a tile rises if one of its pixels changes.

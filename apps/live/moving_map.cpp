@@ -59,7 +59,7 @@ void MovingMap::AddScan(const ScanOnMap& scan) {
     drawn_nodes_.push_back(nodes_[i]);
   }
   if (!scan.localized) return;
-  outdated_ = outdated_ || drawable_ + 1 < scans_.size();  // those that have waited are drawn now
+  outdated_ = outdated_ || drawable_ + 1 < scans_.size();  // scans have waited to be drawn
   drawable_ = scans_.size();
   CellBox box;
   if (!Draw(scans_.back(), T_map_node, &grid_, &box)) ++left_out_;

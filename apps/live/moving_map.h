@@ -17,14 +17,16 @@ namespace loopgrid {
 struct ScanOnMap {
   ScanPlace place;
   SE2 T_map_robot;        ///< tells where the node is, if it is new
-  bool localized = true;  ///< false: its session may yet move as a whole; not drawn until then
+  bool localized = true;  ///< false: the robot has not found itself in the old map yet; the scan is
+                          ///< not drawn until it has
   std::shared_ptr<const PointScan> points;
 };
 
-/// An occupancy grid whose scans hang on the nodes of a graph. When nodes move, the scans are drawn
-/// anew, a few at a time, into a second grid; until that is complete the first one stays and still
-/// takes new scans. Needs 4 bytes a cell, twice that while it redraws, and some 100 bytes a scan
-/// beside its points, which are shared. One thread may use an object at a time.
+/// An occupancy grid of scans whose poses are relative to the nodes of a graph. When nodes move,
+/// the scans are drawn anew, a few at a time, into a second grid. Until that is complete the first
+/// one stays and still takes new scans. Takes 4 bytes for each cell, twice that while it redraws,
+/// and some 100 bytes for each scan beside its points, which are shared. One thread may use an
+/// object at a time.
 class MovingMap {
  public:
   /// Throws Error (kUsage) if the options are not valid.
@@ -36,15 +38,15 @@ class MovingMap {
   /// Where the nodes are now (T_map_node).
   void MoveNodes(std::span<const SE2> poses);
 
-  /// Some nodes are no longer where they were drawn: half a cell off, or turned so far that
-  /// something ten metres away is.
+  /// Whether some nodes are no longer where they were drawn: half a cell off, or turned so far that
+  /// a point ten metres away is half a cell off.
   bool IsOutdated() const { return outdated_; }
 
   /// Begins to draw everything anew.
   void StartRedraw();
   bool IsRedrawing() const { return next_.has_value(); }
 
-  /// Draws the next `scans` scans; the last call brings the new picture.
+  /// Draws the next `scans` scans. After the last ones, grid() is the new grid.
   void ContinueRedraw(std::size_t scans);
 
   const OccupancyGrid& grid() const { return grid_; }
@@ -62,7 +64,7 @@ class MovingMap {
   };
   struct Redraw {
     OccupancyGrid grid;
-    std::vector<SE2> nodes;  // where they are drawn; those that come later are drawn where they are
+    std::vector<SE2> nodes;  // where they are drawn: where they were at the start, or came to be
     CellBox extent;
     std::size_t drawn = 0;  // scans
     std::int64_t left_out = 0;

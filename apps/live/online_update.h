@@ -17,16 +17,16 @@ struct NodeStates {
   std::vector<Eigen::Matrix3d> covariances;  ///< as Slam::NodeCovariances(); may be fewer
 };
 
-/// What one scan has changed, as values: what the mapping thread hands to all that show or write.
+/// What one scan has changed. The mapping thread hands it to everything that shows or writes.
 struct OnlineUpdate {
   TrackedScan tracked;
-  std::int64_t line = 0;                    ///< of the journal, from 1: where the scan stands
+  std::int64_t line = 0;                    ///< line of the journal with the scan, from 1
   double timestamp = 0.0;                   ///< of the scan, as in the log, seconds
   double latency_seconds = 0.0;             ///< from the arrival of its line to its pose
   ScanPlace place;                          ///< of the scan
   std::shared_ptr<const PointScan> points;  ///< null if the scan adds nothing to the map
-  std::vector<Closure> closures;      ///< new ones and changed ones
-  std::shared_ptr<const NodeStates> nodes;  ///< where tracked.optimized: they have moved
+  std::vector<Closure> closures;            ///< new ones and changed ones
+  std::shared_ptr<const NodeStates> nodes;  ///< null if they have not moved
 };
 
 }  // namespace loopgrid

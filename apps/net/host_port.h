@@ -17,8 +17,8 @@ HostPort ParseHostPort(std::string_view text);
 /// As ParseHostPort() reads it.
 std::string ToString(const HostPort& address);
 
-/// Whether a host can be nothing but this machine, seen from this machine: `localhost` or a
-/// loopback address. Other names are not looked up: they are not.
+/// Whether a host is certainly this machine: `localhost` or a loopback address. Other names are not
+/// looked up, and give false.
 bool IsLoopback(const std::string& host);
 
 }  // namespace loopgrid

@@ -10,7 +10,7 @@
 
 namespace loopgrid {
 
-/// The lines of a file byte for byte, with their ends: put together again, they are the file.
+/// The lines of a file with their ends, byte for byte: joined they are the file.
 class RawLineReader {
  public:
   explicit RawLineReader(InputFile file,

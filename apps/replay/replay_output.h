@@ -20,8 +20,8 @@ class ReplayOutput {
   /// Waits until the other side, or the system for it, has taken all of it.
   void Write(std::string_view bytes) const;
 
-  /// Says that this was all. On a connection, waits until the other side has closed it too: only
-  /// then is it certain that the bytes have not been turned away.
+  /// Tells the other side of a connection that nothing more comes, and waits until it has closed
+  /// the connection too: only then it is certain that it has not refused the bytes.
   void Finish() const;
 
  private:

@@ -9,8 +9,8 @@ class ReplaySchedule {
   explicit ReplaySchedule(double speed) : speed_(speed) {}
 
   /// Takes the time stamp of the next scan. Returns when it is due, seconds from the start: as long
-  /// after the one before as the stamps say, but at once where the clock has jumped, which is a
-  /// step backwards or one of more than kLongestGap.
+  /// after the scan before as the time stamps say. Where the clock of the log has jumped, backwards
+  /// or by more than kLongestGap, it is due at once.
   double Due(double timestamp);
 
   static constexpr double kLongestGap = 5.0;  ///< seconds by the log's clock

@@ -7,7 +7,8 @@ namespace loopgrid {
 /// The page: one HTML document with its styles and scripts in it, made of page/ by the build.
 std::string_view ViewPage();
 
-/// Its Content-Security-Policy: these very styles and scripts, and nothing from elsewhere.
+/// Its Content-Security-Policy: allows exactly these styles and scripts, and nothing from
+/// elsewhere.
 std::string_view ViewPagePolicy();
 
 }  // namespace loopgrid

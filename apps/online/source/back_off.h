@@ -7,17 +7,18 @@ namespace loopgrid {
 /// How long to wait before each attempt at something that keeps failing: ever longer.
 class BackOff {
  public:
-  /// Seconds.
+  /// Both in seconds.
   BackOff(double first, double longest) : first_(first), longest_(longest), next_(first) {}
 
-  /// Before the next attempt, seconds: twice as long as before the last one, up to the longest.
+  /// How long to wait before the next attempt, seconds: twice as long as the last time, up to the
+  /// longest.
   double Next() {
     const double pause = std::min(next_, longest_);
     next_ = 2.0 * pause;
     return pause;
   }
 
-  /// It has worked.
+  /// An attempt has worked: begins again with the first pause.
   void Reset() { next_ = first_; }
 
  private:

@@ -34,7 +34,7 @@ struct stat StatusOf(const Descriptor& file, const std::string& path) {
 
 /// None if there is no such file.
 Descriptor OpenIfThere(const std::string& path) {
-  // O_NONBLOCK: it may be a pipe, and opening one waits for its writer.
+  // O_NONBLOCK: it may be a pipe, and open() would wait until somebody writes to it.
   Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file && errno == ENOENT) return file;
   if (!file) Fail(path, "cannot open: " + SystemReason());
@@ -42,7 +42,7 @@ Descriptor OpenIfThere(const std::string& path) {
   return file;
 }
 
-/// Tells when a file is written to, where the system can (a network's file system cannot).
+/// Waits until a file is written to. Not all file systems report that: those over a network do not.
 class FileWatch {
  public:
   FileWatch() : inotify_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {}
@@ -50,7 +50,7 @@ class FileWatch {
   /// Watches this file from now on, and no other.
   void Watch(const Descriptor& file) {
     if (watch_ >= 0) inotify_rm_watch(inotify_.get(), watch_);
-    // Not by its name, which may be another one's by now.
+    // Not by its name: that may belong to another file by now.
     const std::string path = "/proc/self/fd/" + std::to_string(file.get());
     watch_ = inotify_add_watch(inotify_.get(), path.c_str(), IN_MODIFY);
   }
@@ -98,7 +98,7 @@ void FollowSource::Run(LineQueue* queue) {
       continue;
     }
     if (file_) {
-      // It may have grown until just before its successor came.
+      // It may have grown since it was read, just before its successor took its name.
       if (!ReadToEnd(&inlet)) break;
       inlet.Finish();
       counters_.Count(&SourceCounters::rotations);
@@ -128,8 +128,8 @@ bool FollowSource::ReadToEnd(LineInlet* inlet) {
 
 bool FollowSource::HasShrunk() const { return file_ && StatusOf(file_, path_).st_size < offset_; }
 
-/// The file that has the name now, if it is not the one that is open. A new one counts once there
-/// is something in it, for until then its writer may still be busy with the old one.
+/// The file that has the name now, if it is not the open one. A new file is ignored while it is
+/// empty: its writer may still be writing to the old one.
 Descriptor FollowSource::OpenSuccessor() const {
   struct stat named = {};
   if (stat(path_.c_str(), &named) != 0) return {};

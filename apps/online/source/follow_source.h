@@ -12,22 +12,22 @@
 
 namespace loopgrid {
 
-/// Lines of a file that is being written, from its start on, without end; the last line waits until
-/// it is complete. A file that is not there yet is waited for. When the name passes to another file
-/// (rotation), the old one is read to its end first, and left once there is something in the new
-/// one. A file that shrinks is read from its beginning again.
+/// Lines of a file that is being written, from its start on, without end. The last line waits until
+/// it is complete. A file that is not there yet is waited for. When another file takes the name
+/// (rotation), the old one is read to its end first, and left once the new one is not empty. A file
+/// that shrinks is read from its beginning again.
 ///
-/// The file is looked at whenever it changes, and every 50 ms in any case, or when the queue has
-/// room again. What nobody can tell afterwards is missed: a file that was cut and has outgrown its
-/// old size by then, the first one of two rotations.
+/// The file is looked at whenever it changes, and every 50 ms in any case. Two things can happen
+/// unseen between two looks: a file shrinks and grows beyond its old size, and a file is rotated
+/// twice, whose middle one is then not read.
 class FollowSource : public LineSource {
  public:
-  /// Throws Error (kInput) if there is no such folder, or if what is there is no file that can be
-  /// read.
+  /// Throws Error (kInput) if the folder does not exist, or if the name belongs to something that
+  /// is no regular file or cannot be read.
   explicit FollowSource(std::string path);
 
-  /// Ends by Stop() only. Throws Error (kInput) if the file, or one that takes its place, cannot be
-  /// read, and if it begins as gzip or binary data do.
+  /// Ends by Stop() only. Throws Error (kInput) if the file, or one that takes its name, cannot be
+  /// read, or is gzipped or binary.
   void Run(LineQueue* queue) override;
   void Stop() override { wake_up_.Signal(); }
   std::string name() const override { return path_; }

@@ -7,8 +7,8 @@
 
 namespace loopgrid {
 
-/// Where a source pours in what it reads: splits it into lines, stamps them with the time and
-/// pushes them. Closes the queue at the end of its life.
+/// Takes the bytes that a source reads, splits them into lines, stamps each line with the time, and
+/// pushes it to the queue. The destructor closes the queue.
 class LineInlet {
  public:
   explicit LineInlet(LineQueue* queue) : queue_(queue) {}
@@ -20,7 +20,7 @@ class LineInlet {
   bool Add(std::string_view bytes);
 
   /// The stream is over: pushes what is left of it, as a line that is not terminated. Bytes added
-  /// after that begin another one. False once the queue is closed.
+  /// after that begin a new stream. False once the queue is closed.
   bool Finish();
 
   /// Whether the last Add() completed a line.

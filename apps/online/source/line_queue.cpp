@@ -5,7 +5,8 @@
 namespace loopgrid {
 namespace {
 
-/// What a line takes in memory, so that empty ones are bounded too.
+/// The memory that a line takes beside its text. It counts too, so that many empty lines fill the
+/// queue as well.
 std::size_t Cost(const ReceivedLine& line) { return line.text.size() + sizeof(ReceivedLine); }
 
 }  // namespace
@@ -15,7 +16,7 @@ LineQueue::LineQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 bool LineQueue::Push(ReceivedLine line) {
   const std::size_t cost = Cost(line);
   std::unique_lock lock(mutex_);
-  // A line that is larger than the whole queue has it for itself.
+  // A line that is larger than the whole queue is taken once the queue is empty.
   const auto has_room = [&] { return closed_ || lines_.empty() || bytes_ + cost <= max_bytes_; };
   if (!has_room()) {
     ++counters_.waits;

@@ -33,8 +33,9 @@ class LineQueue {
   /// Waits for a line; false at the end: Close() was called and all lines are out.
   bool Pop(ReceivedLine* line);
 
-  /// No more lines are taken; those in the queue can still be popped. The source calls it at its
-  /// end, and a mapper that gives up does, for the source may be waiting for room. Any thread may.
+  /// No more lines are taken; those in the queue can still be popped. The source calls it when it
+  /// ends. A mapper that gives up calls it too, because the source may be waiting for room. Any
+  /// thread may call it.
   void Close();
 
   struct Counters {

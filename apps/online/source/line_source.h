@@ -8,29 +8,29 @@
 
 namespace loopgrid {
 
-/// What a source met so far; what does not apply to its kind stays 0.
+/// What a source has met so far. Counters that do not apply to its kind stay 0.
 struct SourceCounters {
-  std::int64_t connections = 0;  ///< senders that were listened to, one after the other
+  std::int64_t connections = 0;  ///< senders that were read from, one after the other
   std::int64_t refused = 0;      ///< senders turned away: another one was sending, or no log came
   std::int64_t failures = 0;     ///< attempts to connect that failed
   std::int64_t rotations = 0;    ///< times a new file took the place of the one that was followed
   std::int64_t truncations = 0;  ///< times that file shrank and was read from its beginning again
-  std::string last_problem;      ///< what went wrong last; empty if nothing did
+  std::string last_problem;      ///< the last thing that went wrong; empty if nothing did
 };
 
 /// Where the lines of a log come from while the robot drives: standard input, a growing file, a
-/// socket. Constructors open what they can, so that errors come early.
+/// socket. Constructors open files and addresses, so that errors come before anything is mapped.
 class LineSource {
  public:
   virtual ~LineSource() = default;
 
-  /// Reads until the stream ends or Stop(), pushing what it gets, or until the queue is closed.
-  /// Closes the queue before it returns or throws. Runs on a thread of its own, once. Throws
-  /// Error (kInput) if the source cannot be read.
+  /// Reads lines and pushes them until the stream ends, Stop() is called, or the queue is closed.
+  /// Closes the queue before it returns or throws. To be called once, on a thread of its own.
+  /// Throws Error (kInput) if the source cannot be read.
   virtual void Run(LineQueue* queue) = 0;
 
-  /// Makes Run() return soon: lines received so far are still pushed, which takes somebody to pop
-  /// them, or to close the queue. Any thread may call it, also before Run().
+  /// Makes Run() return soon. Lines received so far are still pushed, so another thread has to pop
+  /// them or to close the queue. Any thread may call it, also before Run().
   virtual void Stop() = 0;
 
   /// For messages: "standard input", a path, an address.

@@ -9,19 +9,19 @@
 
 namespace loopgrid {
 
-/// Splits a stream that arrives in pieces into the lines that LineReader would find in a file of
-/// the same bytes, in constant memory: a line that is too long is skipped as it comes.
+/// Splits a stream that arrives in pieces into the same lines that LineReader finds in a file of
+/// the same bytes. Takes constant memory: a line that is too long is skipped while it arrives.
 class LineSplitter {
  public:
   explicit LineSplitter(std::size_t max_line_length = LineReader::kMaxLineLength)
       : max_line_length_(max_line_length) {}
 
-  /// Takes bytes off the front of `bytes` until a line is complete; false when they are used up
-  /// before that. Sets all of `line` but its arrival.
+  /// Removes bytes from the front of `bytes` until a line is complete. False if they end before
+  /// that. Sets all of `line` but its arrival.
   bool Next(std::string_view* bytes, ReceivedLine* line);
 
-  /// At the end of the stream: what is left of it, as a line that is not terminated; false if
-  /// nothing is. The next bytes begin a new stream.
+  /// At the end of the stream: gives what is left of it, as a line that is not terminated. False if
+  /// nothing is left. The next bytes begin a new stream.
   bool Finish(ReceivedLine* line);
 
  private:

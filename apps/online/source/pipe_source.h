@@ -7,14 +7,14 @@
 
 namespace loopgrid {
 
-/// Lines from a descriptor: standard input, a pipe, a terminal. They are passed on as soon as they
-/// are there; the stream ends when all writers have closed it.
+/// Lines from a descriptor: standard input, a pipe, a terminal. Each is passed on as soon as it is
+/// there. The stream ends when all writers have closed it.
 class PipeSource : public LineSource {
  public:
-  /// `descriptor` stays its owner's. Throws Error (kInput) if it cannot be read from.
+  /// Does not close `descriptor`. Throws Error (kInput) if it cannot be read from.
   PipeSource(int descriptor, std::string name);
 
-  /// Throws Error (kInput) for a stream that begins as gzip or binary data do.
+  /// Throws Error (kInput) for a stream that is gzipped or binary.
   void Run(LineQueue* queue) override;
   void Stop() override { wake_up_.Signal(); }
   std::string name() const override { return name_; }

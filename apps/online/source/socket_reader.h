@@ -7,11 +7,11 @@
 
 namespace loopgrid {
 
-/// Has the system notice within half a minute when the other end of a TCP connection is gone
-/// without a word: its power, or the cable.
+/// Makes the system close a TCP connection within half a minute when the other machine does not
+/// answer any more, because its power or its network has failed.
 void KeepAlive(int socket);
 
-/// Takes what a socket has received.
+/// Reads what a socket has received.
 class SocketReader {
  public:
   enum class Outcome { kBytes, kNothing, kEnd };
@@ -22,7 +22,7 @@ class SocketReader {
   /// After kBytes: what was received, until the next call.
   std::string_view bytes() const { return {buffer_.data(), size_}; }
 
-  /// After kEnd: why, if it was not in good order.
+  /// After kEnd: the error that ended the connection; empty if the other end has closed it.
   const std::string& problem() const { return problem_; }
 
  private:

@@ -6,8 +6,8 @@
 
 namespace loopgrid {
 
-/// Looks at the beginning of a stream, in whatever pieces it arrives, for what cannot be a log of
-/// lines.
+/// Looks at the beginning of a stream for what cannot be a log of lines. The stream may arrive in
+/// pieces of any size.
 class StartCheck {
  public:
   /// `name` is the stream's, for the message.

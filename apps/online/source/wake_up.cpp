@@ -16,7 +16,7 @@ WakeUp::WakeUp() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
 
 void WakeUp::Signal() const {
   const std::uint64_t one = 1;
-  // It can only fail where the count is at its limit, and then the descriptor is readable anyway.
+  // It fails only if the count is at its limit, and then the descriptor is readable already.
   [[maybe_unused]] const auto written = write(descriptor(), &one, sizeof one);
 }
 

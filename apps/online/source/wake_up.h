@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// A descriptor that becomes readable, for good, once Signal() is called: what a thread that waits
-/// in poll() adds to what it waits for, so that another thread can call it back.
+/// A descriptor that becomes readable for good once Signal() is called. A thread that waits in
+/// poll() waits for it too, so that another thread can end the waiting.
 class WakeUp {
  public:
   /// Throws std::system_error if the system has no descriptor left.

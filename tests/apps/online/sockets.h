@@ -26,8 +26,8 @@ inline sockaddr_in LoopbackAddress(int port) {
   return address;
 }
 
-/// One end of a TCP connection on loopback, by plain system calls, to do what no decent client
-/// does.
+/// One end of a TCP connection on loopback, by plain system calls, for tests of clients that behave
+/// badly.
 class Socket {
  public:
   explicit Socket(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
@@ -47,7 +47,7 @@ class Socket {
 
   int get() const { return descriptor_.get(); }
 
-  /// False if the other end does not want it.
+  /// False if the other end has closed the connection.
   bool Send(std::string_view bytes) const {
     while (!bytes.empty()) {
       const ssize_t count = send(get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -75,7 +75,7 @@ class Socket {
   /// Says that no more will be sent, but stays.
   void CloseHalf() const { shutdown(get(), SHUT_WR); }
 
-  /// Leaves with a reset instead of a good-bye.
+  /// Resets the connection instead of closing it.
   void Reset() {
     const linger at_once = {1, 0};
     setsockopt(get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);

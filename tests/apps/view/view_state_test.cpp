@@ -171,7 +171,8 @@ TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
 TEST(ViewState, NeverForgetsAcceptedClosuresButOldRefusedOnes) {
   ViewState state("a", 0.05);
   for (int i = 0; i < 1000; ++i) {
-    state.Apply(UpdateWithClosure(0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
+    state.Apply(UpdateWithClosure(
+        0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
   }
   const json snapshot = SnapshotOf(state);
   EXPECT_EQ(snapshot["closures"].size(), 700u);

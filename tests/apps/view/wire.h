@@ -12,7 +12,7 @@
 
 namespace loopgrid::test_support {
 
-/// A client that sees and sends bytes.
+/// An HTTP client that sends and shows plain bytes.
 class Wire {
  public:
   explicit Wire(int port) : socket_(Socket::ConnectTo(port)) {}
