@@ -225,7 +225,7 @@ TEST_F(HttpServiceTest, DropsClientsThatDoNotTakeTheirReply) {
 // for as long as that.
 bool GetsItSlowly(const HttpService& service, const char* request, std::size_t size) {
   constexpr auto kPause = std::chrono::milliseconds(10);
-  constexpr auto kDuration = std::chrono::milliseconds(1500);
+  constexpr auto kDuration = std::chrono::milliseconds(800);
   Wire wire(service.port(), request, 64 * 1024);
   const std::size_t pieces = kDuration / kPause;
   for (std::size_t piece = 1; piece <= pieces; ++piece) {
@@ -237,7 +237,7 @@ bool GetsItSlowly(const HttpService& service, const char* request, std::size_t s
 
 TEST_F(HttpServiceTest, LetsClientsTakeTheirTimeWhileTheyTakeSomething) {
   ViewServerOptions options = QuickOptions();
-  options.write_timeout = 0.8;
+  options.write_timeout = 0.4;
   Start(options);
   for (const char* request :
        {"GET /large HTTP/1.1\r\n\r\n", "GET /long-snapshot HTTP/1.1\r\n\r\n"}) {
