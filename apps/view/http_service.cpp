@@ -112,7 +112,7 @@ class HttpService::Impl : public HttpHub {
 
   void Accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (error) {  // out of descriptors, most likely: some may be closed soon
+      if (error) {  // most likely the process has no descriptor left: some may be closed soon
         pause_.expires_after(kAcceptPause);
         pause_.async_wait([this](error_code) { Accept(); });
         return;
@@ -127,7 +127,7 @@ class HttpService::Impl : public HttpHub {
       const std::lock_guard lock(mutex_);
       if (counters_.connections >= options_.max_connections) {
         ++counters_.turned_away;
-        return;  // closes it
+        return;  // which closes the socket
       }
       ++counters_.connections;
     }
@@ -162,16 +162,17 @@ class HttpService::Impl : public HttpHub {
   const ViewServerOptions options_;
   HttpContent* content_ = nullptr;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members up to counters_
   std::condition_variable sent_;
   std::int64_t batches_ = 0;
   bool has_backlog_ = false;
   HttpCounters counters_;
 
-  // Of the thread alone.
+  // Only the thread uses these.
   std::vector<HttpClientConnection*> viewers_;
   Clock::time_point last_news_ = Clock::now();
-  asio::io_context io_{1};  // destroyed before the above: it destroys all connections
+  asio::io_context io_{
+      1};  // destroyed before the members above, which connections use at their end
   tcp::acceptor acceptor_;
   const tcp::endpoint endpoint_;
   asio::steady_timer batch_timer_{io_};

@@ -47,7 +47,7 @@ class ViewServer::Impl : public HttpContent {
   void Add(const OnlineUpdate& update) {
     const std::lock_guard lock(mutex_);
     inbox_.push_back(update);
-    inbox_.back().points = nullptr;  // the map has them
+    inbox_.back().points = nullptr;  // viewers get them as tiles of the map
   }
 
   void Finish() {
@@ -98,7 +98,7 @@ class ViewServer::Impl : public HttpContent {
     }
   }
 
-  // True if nothing more will come.
+  // Applies the updates that have come. True if nothing more will come.
   bool TakeInbox() {
     std::vector<OnlineUpdate> updates;
     bool ending = false;
@@ -114,11 +114,11 @@ class ViewServer::Impl : public HttpContent {
 
   const LiveMap* map_;
 
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members up to ending_
   std::vector<OnlineUpdate> inbox_;
   bool ending_ = false;
 
-  // The rest belongs to the thread of the service, which is stopped first.
+  // Only the thread of the service uses the rest. It ends before they are destroyed.
   std::shared_ptr<const std::string> snapshot_;  // null if it is out of date
   std::uint64_t tiles_told_ = 0;
   Clock::time_point moved_nodes_told_;

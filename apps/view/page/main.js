@@ -10,11 +10,11 @@ let paused = null;        // the world as it was when the picture was paused
 let needsDrawing = true;
 let frameIsRequested = false;
 
-// What tests and the curious may look at.
+// For tests, and for looking at in the console of the browser.
 window.loopgrid = {
   fps: 0,                 // frames of the last second
   frames: 0,              // so far
-  drawn: 0,               // of them, those that changed something
+  drawn: 0,               // frames that changed something
   firstPicture: null,     // milliseconds from the start of loading to the first piece of map
   get world() { return paused ?? world; },
   live: world,            // as the server tells it, also while the picture is paused

@@ -26,7 +26,7 @@ class Scene {
     this.tiles = tiles;
     this.palette = readPalette();
     this.showsEllipses = false;
-    this.robot = null;      // where it is drawn: glides after the newest pose
+    this.robot = null;      // where it is drawn: it moves smoothly to the newest pose
     this.paths = null;      // of the graph, and what they were made of
   }
 
@@ -161,7 +161,7 @@ class Scene {
     return true;
   }
 
-  // Those that would be drawn on top of each other are left out.
+  // Leaves out ellipses that would overlap the last one that was drawn.
   drawEllipses(world) {
     const {context, palette} = this;
     const gap = this.pixels(22);
@@ -178,8 +178,8 @@ class Scene {
     context.globalAlpha = 1;
   }
 
-  // A closure that has just been decided: its edge lights up, and if it was accepted a ring closes
-  // in on the place that the robot has recognised.
+  // A closure that has just been decided: its edge lights up. If it was accepted, a ring shrinks
+  // around the place that the robot has recognised.
   drawFlashes(world, now) {
     const {context, palette, camera} = this;
     for (const id of [...world.flashes.keys()]) {

@@ -129,7 +129,7 @@ class Tiles {
     }
   }
 
-  // True if the tile will come, or may.
+  // True if the tile is on its way, or waits for its turn.
   fetch(tile, palette, now) {
     if (this.offline || tile.failed >= tile.version) return false;
     if (tile.fetching || this.fetches >= MAX_FETCHES) return true;
@@ -145,7 +145,7 @@ class Tiles {
     tile.fetching = true;
     tile.fetched = now;
     ++this.fetches;
-    tile.failed = version;    // unless it comes
+    tile.failed = version;    // until it is here
     try {
       const reply = await fetch(`/tiles/${tile.key}.png?v=${run}.${version}`);
       if (!reply.ok) return;
@@ -165,7 +165,7 @@ class Tiles {
     }
   }
 
-  // Grey becomes the colours of the page; what is unknown stays clear.
+  // Turns grey into the colours of the page. Unknown pixels become transparent.
   paint(tile, image, palette) {
     tile.picture ??= Object.assign(document.createElement('canvas'),
                                    {width: TILE_SIDE, height: TILE_SIDE});

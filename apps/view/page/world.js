@@ -1,11 +1,11 @@
 'use strict';
 
-// What the server has told: a copy of its state, kept up to date by its events. Metres, radians.
+// A copy of the state of the server, kept up to date by its events. Metres, radians.
 
-const TAIL = 400;       // scans drawn since the last node: in known space there are no new nodes
-const LATENCIES = 200;  // scans that the figures are about
+const TAIL = 400;       // scans drawn after the last node, at most: known space adds no nodes
+const LATENCIES = 200;  // newest scans whose latency is shown
 const FLASH = 1600;     // milliseconds that a closure lights up
-const FLASHES = 12;     // at a time
+const FLASHES = 12;     // closures that light up at the same time, at most
 const REFUSED = 200;    // closures remembered, the newest
 
 class World {
