@@ -171,8 +171,8 @@ class HttpService::Impl : public HttpHub {
   // Only the thread uses these.
   std::vector<HttpClientConnection*> viewers_;
   Clock::time_point last_news_ = Clock::now();
-  asio::io_context io_{
-      1};  // destroyed before the members above, which connections use at their end
+  // Destroyed before the members above, which connections use at their end.
+  asio::io_context io_{1};
   tcp::acceptor acceptor_;
   const tcp::endpoint endpoint_;
   asio::steady_timer batch_timer_{io_};
