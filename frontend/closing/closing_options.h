@@ -9,9 +9,9 @@ namespace loopgrid {
 
 /// How the scan of a new node is matched with the map around an old one.
 struct ClosureMatcherOptions {
-  RefinerOptions refiner;
-  MatchCovarianceOptions covariance;
-  VisibilityOptions visibility;
+  RefinerOptions refiner{};
+  MatchCovarianceOptions covariance{};
+  VisibilityOptions visibility{};
   double fine_resolution = 0.05;    ///< of the likelihood table for small windows, metres
   double coarse_resolution = 0.10;  ///< the same for large windows, metres
   double fine_sigma = 0.07;         ///< of the likelihood around a surface, small windows, metres
@@ -58,9 +58,9 @@ struct PlaceFinderOptions {
 
 /// Which matches are proposed as closures.
 struct ClosureFinderOptions {
-  ClosureGateOptions gate;
-  ClosureMatcherOptions matcher;
-  PlaceFinderOptions place_finder;
+  ClosureGateOptions gate{};
+  ClosureMatcherOptions matcher{};
+  PlaceFinderOptions place_finder{};
   double map_path = 10.0;          ///< nodes this much travel before and after make the map, metres
   double map_radius = 25.0;        ///< surfaces farther from the old node are left out, metres
   double surroundings_path = 4.0;  ///< of travel, searched with in large windows, metres
@@ -116,7 +116,7 @@ struct ClosureGraphOptions {
 
 /// How neighbours are linked when the run ends.
 struct NeighbourLinkerOptions {
-  ClosureMatcherOptions matcher;
+  ClosureMatcherOptions matcher{};
   double distance = 3.0;     ///< nodes this close may see the same surfaces, metres
   int same_pass = 10;        ///< nodes this close along the path belong to one pass
   int already_linked = 3;    ///< no link where a closure is this many nodes away or fewer
@@ -134,10 +134,10 @@ struct NeighbourLinkerOptions {
 
 /// The options of all that happens to a node after tracking.
 struct ClosingOptions {
-  ClosureFinderOptions finder;
-  ClosureVerifierOptions verifier;
-  ClosureGraphOptions graph;
-  NeighbourLinkerOptions linker;
+  ClosureFinderOptions finder{};
+  ClosureVerifierOptions verifier{};
+  ClosureGraphOptions graph{};
+  NeighbourLinkerOptions linker{};
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

@@ -47,6 +47,4 @@ struct Closure {
   ClosureOutcome outcome = ClosureOutcome::kPending;
 };
 
-using ClosureRecord = Closure;
-
 }  // namespace loopgrid

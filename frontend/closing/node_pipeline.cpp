@@ -77,7 +77,7 @@ bool NodePipeline::PutIntoGraph(std::span<const ClosureId> verified) {
   for (const auto& [id, constraint] : constraints) closures_.SetChi2(id, graph_.Chi2(constraint));
   SetOutcomes(verified, kept ? ClosureOutcome::kAccepted : ClosureOutcome::kRejected);
   SetOutcomes(removed, ClosureOutcome::kRejected);
-  if (!kept) verifier_.Forget(verified);
+  verifier_.Forget(kept ? std::span<const ClosureId>(removed) : verified);
   if (motion && kept) session_.localized = true;
   return kept;
 }

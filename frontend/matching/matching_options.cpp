@@ -4,7 +4,16 @@
 
 namespace loopgrid {
 
+void NormalOptions::Validate() const {
+  RequireBetween("neighbours", neighbours, 1, 1000);
+  RequireBetween("max_gap", max_gap, 0.001, 1000.0);
+  RequireBetween("max_reach", max_reach, 0.001, 1000.0);
+  RequireBetween("max_flatness", max_flatness, 0.0, 1.0);
+  RequireBetween("max_thickness", max_thickness, 0.0, 100.0);
+}
+
 void SensorModelOptions::Validate() const {
+  normals.Validate();
   RequireBetween("min_range", min_range, 0.0, 100.0);
   RequireBetween("max_range", max_range, 0.1, 1000.0);
   RequireBetween("bin_width", bin_width, 0.01, 10.0);

@@ -9,6 +9,18 @@ struct SearchWindow {
   double rotation = 0.2;  ///< radians
 };
 
+/// Which hits lie on one line of surface and so have a normal.
+struct NormalOptions {
+  int neighbours = 3;      ///< hits on either side that the line is fitted to, at most
+  double max_gap = 1.0;    ///< between consecutive hits of one surface, metres
+  double max_reach = 0.6;  ///< from the hit to a neighbour, metres; the nearest one always counts
+  double max_flatness = 0.15;   ///< spread across the line over spread along it
+  double max_thickness = 0.05;  ///< spread across the line, metres
+
+  /// Throws Error (kUsage) naming the field, its value and its bound.
+  void Validate() const;
+};
+
 /// The no-return rule: which readings are hits, which say that nothing was met. The no-return value
 /// of a laser shows as a heap of readings at the very top of all those seen so far: more than a
 /// handful, and many more than in the bins below it.
@@ -20,6 +32,7 @@ struct SensorModelOptions {
   int heap_factor = 2;          ///< a heap has more than so many times the readings of those bins
   int min_heap = 8;             ///< ... and more readings than this
   double min_heap_range = 4.0;  ///< a heap nearer than this is a room, metres
+  NormalOptions normals{};
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

@@ -6,15 +6,11 @@
 namespace loopgrid {
 namespace {
 
-constexpr int kNeighbours = 3;          // on either side of a point
-constexpr float kMaxGap = 1.0F;         // metres between consecutive hits of one surface
-constexpr float kMaxReach = 0.6F;       // metres from the point to a neighbour that counts ...
-constexpr float kMaxFlatness = 0.15F;   // spread across the line over spread along it
-constexpr float kMaxThickness = 0.05F;  // metres, spread across the line
-
 // The line through the surface around hits[i]: unit normal, or zero where the points form no line.
 Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::vector<int>& beams,
-                         int i) {
+                         int i, const NormalOptions& options) {
+  const auto max_gap = static_cast<float>(options.max_gap);
+  const auto max_reach = static_cast<float>(options.max_reach);
   const int count = static_cast<int>(hits.size());
   const auto at = [&](int k) -> const Eigen::Vector2f& {
     return hits[static_cast<std::size_t>(k)];
@@ -22,16 +18,16 @@ Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::ve
   const auto beam = [&](int k) { return beams[static_cast<std::size_t>(k)]; };
   // Grazing beams are far apart on the wall; always take the nearest neighbour on either side.
   const auto joined = [&](int a, int b) {
-    return beam(b) - beam(a) <= 2 && (at(a) - at(b)).norm() < kMaxGap;
+    return beam(b) - beam(a) <= 2 && (at(a) - at(b)).norm() < max_gap;
   };
   int first = i;
-  while (first > 0 && i - first < kNeighbours && joined(first - 1, first) &&
-         (first == i || (at(first - 1) - at(i)).norm() < kMaxReach)) {
+  while (first > 0 && i - first < options.neighbours && joined(first - 1, first) &&
+         (first == i || (at(first - 1) - at(i)).norm() < max_reach)) {
     --first;
   }
   int last = i;
-  while (last + 1 < count && last - i < kNeighbours && joined(last, last + 1) &&
-         (last == i || (at(last + 1) - at(i)).norm() < kMaxReach)) {
+  while (last + 1 < count && last - i < options.neighbours && joined(last, last + 1) &&
+         (last == i || (at(last + 1) - at(i)).norm() < max_reach)) {
     ++last;
   }
   if (last - first < 2) return Eigen::Vector2f::Zero();
@@ -53,7 +49,8 @@ Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::ve
   const float root = std::sqrt(0.25F * (xx - yy) * (xx - yy) + xy * xy) * scale;
   const float along = std::sqrt(half_trace + root);
   const float across = std::sqrt(std::max(half_trace - root, 0.0F));
-  if (along < 1e-4F || across > kMaxThickness || across > kMaxFlatness * along) {
+  if (along < 1e-4F || across > static_cast<float>(options.max_thickness) ||
+      across > static_cast<float>(options.max_flatness) * along) {
     return Eigen::Vector2f::Zero();
   }
   const float direction = 0.5F * std::atan2(2.0F * xy, xx - yy);
@@ -62,7 +59,8 @@ Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::ve
 
 }  // namespace
 
-PointScan MakePointScan(const LaserScan& scan, double min_range, double max_range) {
+PointScan MakePointScan(const LaserScan& scan, double min_range, double max_range,
+                        const NormalOptions& options) {
   PointScan result;
   result.T_robot_laser = scan.T_robot_laser;
   std::vector<int> beams;
@@ -86,7 +84,7 @@ PointScan MakePointScan(const LaserScan& scan, double min_range, double max_rang
   }
   result.normals.reserve(result.hits.size());
   for (std::size_t i = 0; i < result.hits.size(); ++i) {
-    Eigen::Vector2f normal = NormalAt(result.hits, beams, static_cast<int>(i));
+    Eigen::Vector2f normal = NormalAt(result.hits, beams, static_cast<int>(i), options);
     if (normal.dot(laser - result.hits[i]) < 0.0F) normal = -normal;
     result.normals.push_back(normal);
   }

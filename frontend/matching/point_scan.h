@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "frontend/log/observation/observation.h"
+#include "frontend/matching/matching_options.h"
 
 namespace loopgrid {
 
@@ -19,6 +20,7 @@ struct PointScan {
 
 /// Makes points of `scan`. Readings in [min_range, max_range) are hits; readings at or above
 /// `max_range` are no-returns; those below `min_range` say nothing.
-PointScan MakePointScan(const LaserScan& scan, double min_range, double max_range);
+PointScan MakePointScan(const LaserScan& scan, double min_range, double max_range,
+                        const NormalOptions& options = {});
 
 }  // namespace loopgrid

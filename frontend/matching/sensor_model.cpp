@@ -35,7 +35,7 @@ void SensorModel::Learn(const LaserScan& scan) {
 
 PointScan SensorModel::Interpret(const LaserScan& scan) {
   Learn(scan);
-  return MakePointScan(scan, options_.min_range, usable_range_);
+  return MakePointScan(scan, options_.min_range, usable_range_, options_.normals);
 }
 
 }  // namespace loopgrid

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "backend/base/error.h"
@@ -12,10 +13,10 @@
 #include "backend/solve/normal_equations.h"
 #include "frontend/closing/node_queue.h"
 #include "frontend/matching/sensor_model.h"
+#include "frontend/slam/robot_pose.h"
 #include "frontend/slam/standstill.h"
 #include "frontend/slam/tracking_graph.h"
 #include "frontend/tracking/known_space.h"
-#include "frontend/tracking/odometry_noise.h"
 #include "frontend/tracking/pose_covariance.h"
 #include "frontend/tracking/scan_trail.h"
 #include "frontend/tracking/tracker.h"
@@ -39,7 +40,8 @@ class Slam::Impl {
         tracker_(options.tracker),
         queue_(options.threads > 1, options.closing),
         graph_(options.update_lag),
-        standstill_(options.standstill) {}
+        standstill_(options.standstill),
+        robot_(options.tracker.odometry, options.unmatched_factor) {}
 
   // Section V-A of the tutorial, for one odometry measurement and laser scan.
   TrackedScan AddScan(const Observation& observation) {
@@ -100,7 +102,11 @@ class Slam::Impl {
   const TrackingGraph& graph() const { return graph_; }
 
  private:
-  SE2 T_map_robot() const { return graph_.pose(reference_) * T_reference_robot_; }
+  SE2 T_map_robot() const { return graph_.pose(robot_.reference()) * robot_.T_reference_robot(); }
+
+  SE2 FromReference(const SE2& pose) const {
+    return graph_.pose(robot_.reference()).Inverse() * pose;
+  }
 
   // Keeps the scan as points. Returns the motion since the one before, by odometry.
   SE2 Keep(const Observation& observation) {
@@ -127,8 +133,8 @@ class Slam::Impl {
     if (motion.translation().norm() > options_.carried.farthest) motion = SE2();
     NewNode node;
     if (graph_.size() > 0) {
-      node.parent = reference_;
-      node.T_parent_node = T_reference_robot_ * motion;
+      node.parent = robot_.reference();
+      node.T_parent_node = robot_.T_reference_robot() * motion;
       node.covariance = CarriedCovariance(motion, options_.carried);
       node.gap = options_.carried.farthest;
       node.new_session = true;
@@ -143,46 +149,28 @@ class Slam::Impl {
   void Track(const SE2& motion, TrackedScan* result) {
     const ScopedTimer stopwatch(&statistics_.times.tracking);
     const TrackedPose tracked = tracker_.Track(*scans_.back().points, motion);
-    motion_since_reference_ = motion_since_reference_ * motion;
-    travel_ += motion.translation().norm();
     if (!tracked.matched) {
       ++statistics_.failed_matches;
       if (tracked.unusable) ++statistics_.unusable_scans;
     }
-    T_reference_robot_ = graph_.pose(reference_).Inverse() * tracked.T_map_robot;
+    robot_.Move(motion, FromReference(tracked.T_map_robot),
+                tracked.matched ? std::optional(tracked.covariance) : std::nullopt);
     inlier_share_ = tracked.matched ? tracked.inlier_share : 0.0;
-    UpdateCovariances(tracked);
     result->matched = tracked.matched;
   }
 
-  // The pose is where it was at the reference, moved on by odometry; where the scan was matched,
-  // fused with the match, which alone may leave a direction open (along a bare corridor).
-  void UpdateCovariances(const TrackedPose& tracked) {
-    Eigen::Matrix3d odometry =
-        OdometryCovariance(motion_since_reference_, options_.tracker.odometry);
-    if (!tracked.matched) odometry *= options_.unmatched_factor;
-    edge_covariance_ = tracked.matched ? FuseCovariances(odometry, tracked.covariance) : odometry;
-    pose_covariance_ = edge_covariance_;
-    if (!is_known_) return;
-    // In known space the robot came to its reference from elsewhere: an edge rests on the match
-    // alone, the pose also on what was known of it when it was first referred to this node.
-    if (tracked.matched) edge_covariance_ = tracked.covariance;
-    pose_covariance_ =
-        ComposeCovariances(covariance_at_reference_, motion_since_reference_, odometry);
-    if (tracked.matched) pose_covariance_ = FuseCovariances(pose_covariance_, tracked.covariance);
-  }
-
   bool HasMoved() const {
-    return T_reference_robot_.translation().norm() >= options_.node_distance ||
-           std::abs(T_reference_robot_.theta()) >= options_.node_angle;
+    const SE2& moved = robot_.T_reference_robot();
+    return moved.translation().norm() >= options_.node_distance ||
+           std::abs(moved.theta()) >= options_.node_angle;
   }
 
   NewNode EdgeFromReference() const {
     NewNode node;
-    node.parent = reference_;
-    node.T_parent_node = T_reference_robot_;
-    node.covariance = edge_covariance_;
-    node.gap = travel_;
+    node.parent = robot_.reference();
+    node.T_parent_node = robot_.T_reference_robot();
+    node.covariance = robot_.edge_covariance();
+    node.gap = robot_.travel();
     return node;
   }
 
@@ -190,25 +178,18 @@ class Slam::Impl {
     scans_.AddNode(node.parent, node.T_parent_node, reference_scan_);
     node.timestamp = scans_.back().timestamp;
     node.scan = scans_.back().points;
-    reference_ = graph_.Add(node, steps_);
+    result->node = graph_.Add(node, steps_);
     queue_.Submit(std::move(node));
+    robot_.StartAt(result->node);
     reference_scan_ = result->scan;
-    T_reference_robot_ = SE2();
-    edge_covariance_ = pose_covariance_ = covariance_at_reference_ = Eigen::Matrix3d::Zero();
-    motion_since_reference_ = SE2();
-    travel_ = 0.0;
-    tracked_.push_back(reference_);
+    tracked_.push_back(result->node);
     while (std::ssize(tracked_) > options_.tracked_nodes) tracked_.pop_front();
-    result->node = reference_;
   }
 
   // Goes on from another node, which is near.
   void ReferTo(int node) {
-    T_reference_robot_ = graph_.pose(node).Inverse() * T_map_robot();
-    reference_ = node;
+    robot_.ReferTo(node, graph_.pose(node).Inverse() * T_map_robot());
     reference_scan_ = scans_.size() - 1;
-    motion_since_reference_ = SE2();
-    covariance_at_reference_ = pose_covariance_;
   }
 
   void TakeUpdates(TrackedScan* result) {
@@ -253,9 +234,7 @@ class Slam::Impl {
         shift.translation().norm() > known.max_shift || std::abs(shift.theta()) > known.max_turn) {
       return false;
     }
-    // The pose is known as well as before: the same scan, matched again, does not make it surer.
-    T_reference_robot_ = graph_.pose(reference_).Inverse() * tracked.T_map_robot;
-    edge_covariance_ = tracked.covariance;
+    robot_.Correct(FromReference(tracked.T_map_robot), tracked.covariance);
     known_nodes_ = nodes;
     return true;
   }
@@ -275,10 +254,10 @@ class Slam::Impl {
   // Says where the scan is, and forgets its points if the map does not need them.
   void Describe(TrackedScan* result) {
     result->T_map_robot = T_map_robot();
-    result->covariance =
-        ComposeCovariances(graph_.covariance(reference_), T_reference_robot_, pose_covariance_);
+    result->covariance = ComposeCovariances(graph_.covariance(robot_.reference()),
+                                            robot_.T_reference_robot(), robot_.covariance());
     result->localized = graph_.session().localized;
-    scans_.back().place = {reference_, T_reference_robot_};
+    scans_.back().place = {robot_.reference(), robot_.T_reference_robot()};
     if (is_known_) ++statistics_.known_scans;
     if (result->node < 0 && (is_known_ || standstill_.HasEnough(result->T_map_robot))) {
       scans_.back().points.reset();
@@ -294,16 +273,10 @@ class Slam::Impl {
   Standstill standstill_;
   SlamStatistics statistics_;
 
-  int reference_ = 0;  // the node that the robot's pose is relative to
-  SE2 T_reference_robot_;
-  Eigen::Matrix3d edge_covariance_ = Eigen::Matrix3d::Zero();  // of that pose as a constraint
-  Eigen::Matrix3d pose_covariance_ = Eigen::Matrix3d::Zero();  // ... by all that is known of it
-  Eigen::Matrix3d covariance_at_reference_ = Eigen::Matrix3d::Zero();  // the latter at the start
-  int reference_scan_ = 0;      // the first one with this reference
-  SE2 motion_since_reference_;  // odometry
-  double travel_ = 0.0;         // since the last node, metres
-  double inlier_share_ = 0.0;   // of the latest match
-  std::int64_t steps_ = 0;      // of node_distance or node_angle
+  RobotPose robot_;
+  int reference_scan_ = 0;     // the first one with this reference
+  double inlier_share_ = 0.0;  // of the latest match
+  std::int64_t steps_ = 0;     // of node_distance or node_angle
 
   std::deque<int> tracked_;  // nodes that make the tracking map
   bool is_known_ = false;

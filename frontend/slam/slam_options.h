@@ -36,12 +36,12 @@ struct SlamOptions {
   int update_lag = 5;             ///< steps of the robot from a new node to what it changes
   int threads = 2;  ///< 1: loops are closed in the calling thread; the result is the same
 
-  SensorModelOptions sensor;
-  TrackerOptions tracker;
-  KnownSpaceOptions known_space;
-  ClosingOptions closing;
-  StandstillOptions standstill;
-  CarriedOptions carried;
+  SensorModelOptions sensor{};
+  TrackerOptions tracker{};
+  KnownSpaceOptions known_space{};
+  ClosingOptions closing{};
+  StandstillOptions standstill{};
+  CarriedOptions carried{};
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

@@ -18,9 +18,9 @@ struct OdometryNoise {
 };
 
 struct TrackerOptions {
-  OdometryNoise odometry;
-  RefinerOptions refiner;
-  MatchCovarianceOptions covariance;
+  OdometryNoise odometry{};
+  RefinerOptions refiner{};
+  MatchCovarianceOptions covariance{};
   double table_resolution = 0.05;     ///< of the likelihood table, metres
   double table_sigma = 0.07;          ///< of the likelihood around a surface, metres
   double map_radius = 30.0;           ///< surfaces farther from the robot are left out, metres
