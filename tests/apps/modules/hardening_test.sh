@@ -6,9 +6,9 @@
 set -euo pipefail
 failed=0
 
-# expect FILE WHAT PATTERN: readelf's output about FILE has the pattern.
+# expect FILE WHAT PATTERN: what readelf says about FILE has the pattern.
 expect() {
-  if ! readelf --wide --headers --dynamic --dyn-syms "$1" | grep -Eq -- "$3"; then
+  if ! grep -Eq -- "$3" <<<"$(readelf --wide --headers --dynamic --dyn-syms "$1")"; then
     echo "$1: no $2" >&2
     failed=1
   fi
@@ -22,7 +22,7 @@ for file in "$@"; do
 done
 expect "$1" "PIE flag" '\(FLAGS_1\).*PIE'
 expect "$1" "fortified functions" '__[a-z_]+_chk(@|$)'
-if readelf --wide --program-headers "$1" | grep -E 'GNU_STACK' | grep -q 'RWE'; then
+if grep -Eq 'GNU_STACK.* RWE ' <<<"$(readelf --wide --program-headers "$1")"; then
   echo "$1: an executable stack" >&2
   failed=1
 fi
