@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 apps/install_packages.sh tidy
-# Without precompiled headers, which are g++'s and would hide an include that is missing.
+# Each source alone: together with others it would not miss an include.
 cmake --preset tidy >/dev/null
 # The page of `--view` is a source that the build makes.
 cmake --build --preset tidy --target loopgrid_page >/dev/null
