@@ -1,10 +1,16 @@
 #include "backend/base/worker_pool.h"
 
+#include <system_error>
+
 namespace loopgrid {
 
 WorkerPool::WorkerPool(int threads) {
-  for (int i = 1; i < threads; ++i) {
-    workers_.emplace_back([this, i] { Serve(static_cast<std::size_t>(i)); });
+  try {
+    for (int i = 1; i < threads; ++i) {
+      workers_.emplace_back([this, i] { Serve(static_cast<std::size_t>(i)); });
+    }
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that are there do the work.
   }
 }
 

@@ -12,7 +12,8 @@ namespace loopgrid {
 /// Threads that wait for work. One thread may use a pool at a time.
 class WorkerPool {
  public:
-  /// `threads` counts the caller; at least 1.
+  /// `threads` counts the caller; less than 1 is taken as 1. There are fewer if the system does not
+  /// give as many.
   explicit WorkerPool(int threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;

@@ -7,6 +7,13 @@
 #include "backend/base/error.h"
 
 namespace loopgrid {
+namespace {
+
+// Between these, the fourth power of a width is a number.
+constexpr double kSmallestWidth = 1e-50;
+constexpr double kLargestWidth = 1e50;
+
+}  // namespace
 
 LossValue RobustLoss::Evaluate(double chi2) const {
   const double k2 = width * width;
@@ -34,9 +41,9 @@ LossValue RobustLoss::Evaluate(double chi2) const {
 }
 
 void RobustLoss::Validate() const {
-  if (std::isfinite(width) && width > 0.0) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("robust loss width is {}, expected more than 0", width));
+  if (width >= kSmallestWidth && width <= kLargestWidth) return;
+  throw Error(ErrorCode::kUsage, fmt::format("robust loss width is {}, expected {} to {}", width,
+                                             kSmallestWidth, kLargestWidth));
 }
 
 }  // namespace loopgrid

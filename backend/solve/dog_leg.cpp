@@ -1,46 +1,55 @@
 #include "backend/solve/dog_leg.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+
+#include "backend/solve/dog_leg_path.h"
 
 namespace loopgrid {
 namespace {
 
-// When F falls by more than the first share of what was promised, the next step may be bolder; by
-// less than the second, it has to be more careful.
-constexpr double kTrusted = 0.75;
-constexpr double kDistrusted = 0.25;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSmallestRadius = 1e-12;
+
+// Of the Hessian's diagonal.
+constexpr double kFirstDamping = 1e-5;
+constexpr double kLargestDamping = 1e10;
+constexpr double kDampingFactor = 10.0;
 
 }  // namespace
 
-DogLeg::DogLeg(Eigen::VectorXd cauchy, Eigen::VectorXd newton, Eigen::VectorXd scale)
-    : cauchy_(std::move(cauchy)), newton_(std::move(newton)), scale_(std::move(scale)) {}
+template <typename Pose>
+std::optional<Termination> DogLeg<Pose>::MakeStep(Descent<Pose>* descent) {
+  Linearization<Pose>& linearization = descent->linearization();
+  while (linearization.Factorize(damping_) == Definiteness::kIndefinite) {
+    damping_ = std::max(kFirstDamping, damping_ * kDampingFactor);
+    if (damping_ > kLargestDamping) return Termination::kIndefinite;
+  }
+  const Eigen::VectorXd& b = linearization.gradient();
+  const Eigen::VectorXd newton = linearization.Step();
+  if (linearization.UndampedDecrease(newton) <= descent->negligible()) {
+    return damping_ == 0.0 ? Termination::kConverged : Termination::kIndefinite;
+  }
+  const Eigen::VectorXd scale = linearization.Scale();
+  Eigen::VectorXd cauchy = -b.cwiseQuotient(scale);
+  cauchy *= -b.dot(cauchy) / linearization.Curvature(cauchy);  // to the minimum along it
+  const DogLegPath path(cauchy, newton, scale);
 
-Eigen::VectorXd DogLeg::PointWithin(double radius) const {
-  if (Length(newton_) <= radius) return newton_;
-  const double first_leg = Length(cauchy_);
-  if (first_leg >= radius) return radius / first_leg * cauchy_;
-  const Eigen::VectorXd leg = newton_ - cauchy_;
-  // The root of |cauchy + t leg| = radius in (0, 1], by the formula in which nothing cancels.
-  const double a = Product(leg, leg);
-  const double half_b = Product(cauchy_, leg);
-  const double c = radius * radius - first_leg * first_leg;
-  const double root = std::sqrt(half_b * half_b + a * c);
-  const double t = half_b > 0.0 ? c / (half_b + root) : (root - half_b) / a;
-  return cauchy_ + t * leg;
+  while (radius_ > kSmallestRadius) {
+    const Eigen::VectorXd dx = path.PointWithin(radius_);
+    const double promised = -2.0 * b.dot(dx) - linearization.Curvature(dx);
+    const Trial trial = descent->TryStep(dx, promised);
+    if (trial.kind == Trial::Kind::kNegligible) return Termination::kStalled;
+    const bool is_taken = trial.kind == Trial::Kind::kTaken;
+    radius_ = NextRadius(radius_, path.Length(dx), is_taken ? trial.gain : -kInfinity);
+    if (!is_taken) continue;
+    damping_ /= kDampingFactor;
+    if (damping_ < kFirstDamping) damping_ = 0.0;
+    return std::nullopt;
+  }
+  return Termination::kStalled;
 }
 
-double DogLeg::Length(const Eigen::VectorXd& v) const { return std::sqrt(Product(v, v)); }
-
-double DogLeg::Product(const Eigen::VectorXd& v, const Eigen::VectorXd& w) const {
-  return v.dot(scale_.cwiseProduct(w));
-}
-
-double NextRadius(double radius, double length, double gain) {
-  if (gain < 0.0) return kDistrusted * length;
-  if (gain > kTrusted) return std::max(radius, 3.0 * length);
-  return gain < kDistrusted ? 0.5 * length : radius;
-}
+template class DogLeg<SE2>;
+template class DogLeg<SE3>;
 
 }  // namespace loopgrid

@@ -1,32 +1,26 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <limits>
+#include <optional>
+
+#include "backend/solve/descent.h"
 
 namespace loopgrid {
 
-/// The path on which Powell's dog leg (1970) looks for a step: from zero straight to the minimum
-/// of the quadratic model along the steepest descent (the Cauchy point), from there straight to the
-/// minimum of the model (the Gauss-Newton step). Along it lengths grow and the model falls.
-class DogLeg {
+/// Powell's dog leg (1970): along a DogLegPath as far as the model has proved right, in the
+/// coordinates in which the Hessian's diagonal is 1. One factorisation a step.
+template <typename Pose>
+class DogLeg : public StepMethod<Pose> {
  public:
-  /// Lengths are those of the vectors whose i-th coordinate is multiplied by the root of scale(i).
-  DogLeg(Eigen::VectorXd cauchy, Eigen::VectorXd newton, Eigen::VectorXd scale);
-
-  /// The last point of the path that is not longer than `radius`.
-  Eigen::VectorXd PointWithin(double radius) const;
-
-  double Length(const Eigen::VectorXd& v) const;
+  std::optional<Termination> MakeStep(Descent<Pose>* descent) override;
+  double damping() const override { return damping_; }
 
  private:
-  double Product(const Eigen::VectorXd& v, const Eigen::VectorXd& w) const;
-
-  Eigen::VectorXd cauchy_;
-  Eigen::VectorXd newton_;
-  Eigen::VectorXd scale_;
+  double radius_ = std::numeric_limits<double>::infinity();  // of the trust region
+  double damping_ = 0.0;  // only as much as makes the Hessian positive semidefinite
 };
 
-/// The radius within which the model is trusted after a step of `length` within `radius` that has
-/// lowered F by `gain` times what the model promised; negative gains are of steps not taken.
-double NextRadius(double radius, double length, double gain);
+extern template class DogLeg<SE2>;
+extern template class DogLeg<SE3>;
 
 }  // namespace loopgrid

@@ -188,67 +188,74 @@ LOOPGRID_INLINE void BackwardLanes(const double* L, int ld, int size, int pivots
   Backward<Vector4>(L, ld, size, pivots, x);
 }
 
+// One function of each kind for the instruction set that `target` enables, and a table of them.
+#define LOOPGRID_KERNELS(Name, target, Vector)                                                     \
+  target void MultiplyAdd##Name(double* C, int ldc, const double* A, int lda, StridedMatrix B,     \
+                                int rows, int cols, int depth) {                                   \
+    Product<Vector, true>(C, ldc, A, lda, B, rows, cols, depth);                                   \
+  }                                                                                                \
+  target void MultiplySubtract##Name(double* C, int ldc, const double* A, int lda,                 \
+                                     StridedMatrix B, int rows, int cols, int depth) {             \
+    Product<Vector, false>(C, ldc, A, lda, B, rows, cols, depth);                                  \
+  }                                                                                                \
+  target bool Eliminate##Name(double* F, int ld, int size, int pivots,                             \
+                              const double* smallest_pivots) {                                     \
+    return Eliminate<Vector>(F, ld, size, pivots, smallest_pivots);                                \
+  }                                                                                                \
+  target void Forward##Name(const double* L, int ld, int size, int pivots, double* x, int lanes) { \
+    ForwardLanes(L, ld, size, pivots, x, lanes);                                                   \
+  }                                                                                                \
+  target void Backward##Name(const double* L, int ld, int size, int pivots, double* x,             \
+                             int lanes) {                                                          \
+    BackwardLanes(L, ld, size, pivots, x, lanes);                                                  \
+  }                                                                                                \
+  constexpr FrontalKernels k##Name{MultiplyAdd##Name, MultiplySubtract##Name, Eliminate##Name,     \
+                                   Forward##Name, Backward##Name};
+
+LOOPGRID_KERNELS(Baseline, , Vector2)
 #ifdef LOOPGRID_HAS_AVX2_VERSION
-LOOPGRID_TARGET_AVX2 void AddAvx2(double* C, int ldc, const double* A, int lda, StridedMatrix B,
-                                  int rows, int cols, int depth) {
-  Product<Vector4, true>(C, ldc, A, lda, B, rows, cols, depth);
-}
-LOOPGRID_TARGET_AVX2 void SubtractAvx2(double* C, int ldc, const double* A, int lda,
-                                       StridedMatrix B, int rows, int cols, int depth) {
-  Product<Vector4, false>(C, ldc, A, lda, B, rows, cols, depth);
-}
-LOOPGRID_TARGET_AVX2 bool EliminateAvx2(double* F, int ld, int size, int pivots,
-                                        const double* smallest_pivots) {
-  return Eliminate<Vector4>(F, ld, size, pivots, smallest_pivots);
-}
-LOOPGRID_TARGET_AVX2 void ForwardAvx2(const double* L, int ld, int size, int pivots, double* x,
-                                      int lanes) {
-  ForwardLanes(L, ld, size, pivots, x, lanes);
-}
-LOOPGRID_TARGET_AVX2 void BackwardAvx2(const double* L, int ld, int size, int pivots, double* x,
-                                       int lanes) {
-  BackwardLanes(L, ld, size, pivots, x, lanes);
-}
-const bool kHasAvx2 = __builtin_cpu_supports("avx2");
+LOOPGRID_KERNELS(Avx2, LOOPGRID_TARGET_AVX2, Vector4)
 #endif
+#undef LOOPGRID_KERNELS
+
+const FrontalKernels& Fastest() {
+  const FrontalKernels* const avx2 = Avx2Kernels();
+  return avx2 != nullptr ? *avx2 : kBaseline;
+}
+
+const FrontalKernels& kKernels = Fastest();
 
 }  // namespace
 
+const FrontalKernels& BaselineKernels() { return kBaseline; }
+
+const FrontalKernels* Avx2Kernels() {
+#ifdef LOOPGRID_HAS_AVX2_VERSION
+  if (__builtin_cpu_supports("avx2")) return &kAvx2;
+#endif
+  return nullptr;
+}
+
 void MultiplyAdd(double* C, int ldc, const double* A, int lda, StridedMatrix B, int rows, int cols,
                  int depth) {
-#ifdef LOOPGRID_HAS_AVX2_VERSION
-  if (kHasAvx2) return AddAvx2(C, ldc, A, lda, B, rows, cols, depth);
-#endif
-  Product<Vector2, true>(C, ldc, A, lda, B, rows, cols, depth);
+  kKernels.multiply_add(C, ldc, A, lda, B, rows, cols, depth);
 }
 
 void MultiplySubtract(double* C, int ldc, const double* A, int lda, StridedMatrix B, int rows,
                       int cols, int depth) {
-#ifdef LOOPGRID_HAS_AVX2_VERSION
-  if (kHasAvx2) return SubtractAvx2(C, ldc, A, lda, B, rows, cols, depth);
-#endif
-  Product<Vector2, false>(C, ldc, A, lda, B, rows, cols, depth);
+  kKernels.multiply_subtract(C, ldc, A, lda, B, rows, cols, depth);
 }
 
 bool EliminateColumns(double* F, int ld, int size, int pivots, const double* smallest_pivots) {
-#ifdef LOOPGRID_HAS_AVX2_VERSION
-  if (kHasAvx2) return EliminateAvx2(F, ld, size, pivots, smallest_pivots);
-#endif
-  return Eliminate<Vector2>(F, ld, size, pivots, smallest_pivots);
+  return kKernels.eliminate_columns(F, ld, size, pivots, smallest_pivots);
 }
 
 void SolveForward(const double* L, int ld, int size, int pivots, double* x, int lanes) {
-#ifdef LOOPGRID_HAS_AVX2_VERSION
-  if (kHasAvx2) return ForwardAvx2(L, ld, size, pivots, x, lanes);
-#endif
-  ForwardLanes(L, ld, size, pivots, x, lanes);
+  kKernels.solve_forward(L, ld, size, pivots, x, lanes);
 }
 
 void SolveBackward(const double* L, int ld, int size, int pivots, double* x, int lanes) {
-#ifdef LOOPGRID_HAS_AVX2_VERSION
-  if (kHasAvx2) return BackwardAvx2(L, ld, size, pivots, x, lanes);
-#endif
-  BackwardLanes(L, ld, size, pivots, x, lanes);
+  kKernels.solve_backward(L, ld, size, pivots, x, lanes);
 }
 
 }  // namespace loopgrid

@@ -47,4 +47,18 @@ void SolveForward(const double* L, int ld, int size, int pivots, double* x, int 
 /// The rows x = (y; z) become (L11^-T (y - L21^T z); z).
 void SolveBackward(const double* L, int ld, int size, int pivots, double* x, int lanes);
 
+/// One version of the functions above.
+struct FrontalKernels {
+  decltype(&MultiplyAdd) multiply_add;
+  decltype(&MultiplySubtract) multiply_subtract;
+  decltype(&EliminateColumns) eliminate_columns;
+  decltype(&SolveForward) solve_forward;
+  decltype(&SolveBackward) solve_backward;
+};
+
+/// The version for every processor, and the one for those with AVX2; null if this is none. For
+/// tests: the functions above are the fastest version that runs here.
+const FrontalKernels& BaselineKernels();
+const FrontalKernels* Avx2Kernels();
+
 }  // namespace loopgrid

@@ -4,7 +4,9 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <mutex>
 #include <new>
 #include <numeric>
@@ -38,6 +40,23 @@ Neighbours ListNeighbours(int n, std::span<const BlockPlace> places) {
   return lists;
 }
 
+/// For as long as it lives, the C library's rand() and srand() work on a sequence of their own: the
+/// program's goes on afterwards as if nothing had been. METIS begins with srand(). Another thread
+/// that calls rand() at the same time disturbs METIS, and gets METIS's numbers.
+class PrivateRandomSequence {
+ public:
+  PrivateRandomSequence() : lock_(mutex_), outside_(initstate(1, state_.data(), state_.size())) {}
+  ~PrivateRandomSequence() { setstate(outside_); }
+  PrivateRandomSequence(const PrivateRandomSequence&) = delete;
+  PrivateRandomSequence& operator=(const PrivateRandomSequence&) = delete;
+
+ private:
+  static inline std::mutex mutex_;
+  const std::lock_guard<std::mutex> lock_;
+  std::array<char, 128> state_{};  // the size that selects rand()'s usual generator
+  char* outside_;
+};
+
 }  // namespace
 
 std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
@@ -58,8 +77,7 @@ std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places
   if (places.empty()) return order;
   Neighbours lists = ListNeighbours(n, places);
   std::vector<int> position(Index(n));
-  static std::mutex mutex;  // of rand()
-  const std::lock_guard lock(mutex);
+  const PrivateRandomSequence sequence;
   const int status = METIS_NodeND(&n, lists.start.data(), lists.nodes.data(), nullptr, nullptr,
                                   order.data(), position.data());
   if (status != METIS_OK) throw std::bad_alloc();

@@ -16,7 +16,8 @@ std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places);
 
 /// Nested dissection (George 1973) by METIS's multilevel partitioning (Karypis and Kumar 1998): ten
 /// times slower, but better for large graphs that fill an area. METIS draws on the C library's
-/// rand(); the result is reproducible as long as nobody else does at the same time.
+/// rand(), here on a sequence of its own: the order is reproducible, and the program's sequence
+/// undisturbed, as long as no other thread calls rand() at the same time.
 std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places);
 
 }  // namespace loopgrid

@@ -2,178 +2,157 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
+#include <limits>
 
 #include "backend/sparse/frontal_kernels.h"
-#include "backend/sparse/ordering.h"
 
 namespace loopgrid {
 namespace {
 
-/// A pivot this small relative to its diagonal entry is rounding noise: the matrix is singular.
+/// A pivot of less than this share of its diagonal entry has hardly a digit that is no rounding
+/// error (2e-16 for each of the terms that were subtracted).
 constexpr double kSmallestPivot = 1e-13;
 
-/// When the factor has this many times the entries per block of the matrix that it had when the
-/// order was found, a new order is worth its time.
-constexpr double kWorthOrdering = 1.2;
+/// How wrong a diagonal entry may be with twice the digits, as a share of it. The arithmetic is
+/// good to 1e-32, but matrices J^T Omega J are made of Jacobians that are rounded to double: where
+/// J v should be zero, it is 1e-16 times the terms that cancel, or more where these come from poses
+/// far from the origin. This is the square of 1e-14.
+constexpr double kExactNoise = 1e-28;
 
-/// Multiplications in the factorisation per column and end of an off-diagonal block from which on
-/// the better order of nested dissection pays for its own time, within a few factorisations.
-constexpr double kWorthDissecting = 1e4;
-
-using ColumnMajor = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+/// The same in double precision: a few units in the last place.
+constexpr double kNoise = 1e-15;
 
 std::size_t PaddedArea(int rows, int cols) {
   return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
-}
-
-/// Entries of the factor per block of the matrix.
-double Fill(const SymbolicFactor& factor, int blocks) {
-  return static_cast<double>(factor.entries) / std::max(1, blocks);
 }
 
 }  // namespace
 
 template <int kDim>
 void SparseCholesky<kDim>::Analyze(const Matrix& H) {
-  if (!KeepOrder(H)) {
-    structure_ = AnalyzeFactor(MinimumDegreeOrder(H.cols(), H.places()), H.places());
-    const double ends = H.cols() + 2.0 * H.block_count();
-    if (kDim * kDim * kDim * structure_.Operations() > kWorthDissecting * ends) {
-      SymbolicFactor other = AnalyzeFactor(NestedDissectionOrder(H.cols(), H.places()), H.places());
-      if (other.Operations() < structure_.Operations()) structure_ = std::move(other);
-    }
-    ordered_fill_ = Fill(structure_, H.block_count());
-  }
-  const int count = structure_.supernode_count();
-  first_child_.assign(Index(count), -1);
-  sibling_.assign(Index(count), -1);
-  for (int s = 0; s < count; ++s) {
-    const int parent = structure_.parent[Index(s)];
-    if (parent == -1) continue;
-    sibling_[Index(s)] = first_child_[Index(parent)];
-    first_child_[Index(parent)] = s;
-  }
-  PlaceSources(H);
-  PlaceMemory();
-}
-
-template <int kDim>
-bool SparseCholesky<kDim>::KeepOrder(const Matrix& H) {
-  std::vector<int> order = structure_.order;
-  if (order.empty() || H.cols() < static_cast<int>(order.size())) return false;
-  while (static_cast<int>(order.size()) < H.cols()) order.push_back(static_cast<int>(order.size()));
-  SymbolicFactor kept = AnalyzeFactor(std::move(order), H.places());
-  if (Fill(kept, H.block_count()) > kWorthOrdering * ordered_fill_) return false;
-  structure_ = std::move(kept);
-  return true;
-}
-
-template <int kDim>
-void SparseCholesky<kDim>::PlaceSources(const Matrix& H) {
-  const int count = structure_.supernode_count();
-  std::vector<int> supernode_of(structure_.order.size());
-  for (int s = 0; s < count; ++s) {
-    for (int k = structure_.first_column[Index(s)]; k < structure_.first_column[Index(s) + 1];
-         ++k) {
-      supernode_of[Index(k)] = s;
-    }
-  }
-  // Counting sort of the blocks by the supernode that eliminates their column.
-  first_source_.assign(Index(count) + 1, 0);
-  const auto supernode_at = [&](const BlockPlace& place) {
-    return supernode_of[Index(
-        std::min(structure_.position[Index(place.row)], structure_.position[Index(place.col)]))];
-  };
-  for (const BlockPlace& place : H.places()) ++first_source_[Index(supernode_at(place)) + 1];
-  for (int s = 0; s < count; ++s) first_source_[Index(s) + 1] += first_source_[Index(s)];
-  sources_.resize(H.places().size());
-  std::vector<std::size_t> next(first_source_.begin(), first_source_.end() - 1);
-  for (int block = 0; block < H.block_count(); ++block) {
-    const BlockPlace& place = H.places()[Index(block)];
-    const int a = structure_.position[Index(place.row)];
-    const int b = structure_.position[Index(place.col)];
-    const int s = supernode_at(place);
-    sources_[next[Index(s)]++] = {block, structure_.PositionInFront(s, std::max(a, b)),
-                                  std::min(a, b) - structure_.first_column[Index(s)], a < b};
-  }
-}
-
-template <int kDim>
-void SparseCholesky<kDim>::PlaceMemory() {
-  const int count = structure_.supernode_count();
-  panel_start_.assign(Index(count) + 1, 0);
-  update_start_.assign(Index(count), 0);
-  std::size_t stack_top = 0;
-  std::size_t stack_size = 0;
-  std::size_t front_size = 0;
-  std::size_t largest = 0;
-  for (int s = 0; s < count; ++s) {
-    const int size = FrontSize(s);
-    panel_start_[Index(s) + 1] =
-        panel_start_[Index(s)] + PaddedArea(size, kDim * structure_.columns(s));
-    front_size = std::max(front_size, PaddedArea(size, size));
-    largest = std::max(largest, Index(size));
-    for (int child = first_child_[Index(s)]; child != -1; child = sibling_[Index(child)]) {
-      stack_top = update_start_[Index(child)];
-    }
-    const int below = kDim * structure_.row_count(s);
-    update_start_[Index(s)] = stack_top;
-    stack_top += PaddedArea(below, below);
-    stack_size = std::max(stack_size, stack_top);
-  }
+  plan_.Analyze(H.cols(), H.places());
   // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows. All of
   // it is written before it counts, so what a smaller matrix has left there may stay.
-  values_.resize(panel_start_.back() + kRowAlignment);
-  front_.resize(front_size + kRowAlignment);
-  updates_.resize(stack_size);
-  solve_work_.resize(kMostLanes * largest);
-  smallest_pivots_.resize(Index(kDim) * structure_.order.size());
+  values_.resize(plan_.panels_size() + kRowAlignment);
+  diagonal_.resize(Index(kDim * H.cols()));
+  solve_work_.resize(kMostLanes * Index(plan_.largest_front()));
+  MakeRoom(&work_);
+}
+
+template <int kDim>
+template <typename Scalar>
+void SparseCholesky<kDim>::MakeRoom(Workspace<Scalar>* work) const {
+  work->front.resize(PaddedArea(plan_.largest_front(), plan_.largest_front()) + kRowAlignment);
+  work->updates.resize(plan_.updates_size());
 }
 
 template <int kDim>
 bool SparseCholesky<kDim>::Factorize(const Matrix& H, const Eigen::VectorXd& added) {
-  assert(H.cols() == static_cast<int>(structure_.order.size()));
+  const SymbolicFactor& structure = plan_.structure();
+  assert(H.cols() == static_cast<int>(structure.order.size()));
   assert(added.size() == 0 || added.size() == kDim * H.cols());
-  for (int s = 0; s < structure_.supernode_count(); ++s) {
-    const int size = FrontSize(s);
-    const int ld = PaddedRows(size);
-    const int pivots = kDim * structure_.columns(s);
-    std::fill_n(front_.begin(), PaddedArea(size, size), 0.0);
-    Assemble(H, added, s);
-    AddUpdates(s);
-    if (!EliminateColumns(front_.data(), ld, size, pivots,
-                          &smallest_pivots_[Index(kDim * structure_.first_column[Index(s)])])) {
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const int size = plan_.front_size(s);
+    const int pivots = plan_.pivots(s);
+    Assemble(H, added, s, &work_.front);
+    AddUpdates(s, &work_);
+    const double* const diagonal = &diagonal_[Index(kDim * structure.first_column[Index(s)])];
+    smallest_pivots_.resize(Index(pivots));
+    for (int i = 0; i < pivots; ++i) smallest_pivots_[Index(i)] = kSmallestPivot * diagonal[i];
+    if (!EliminateColumns(work_.front.data(), PaddedRows(size), size, pivots,
+                          smallest_pivots_.data())) {
       return false;
     }
-    std::copy_n(front_.begin(), PaddedArea(size, pivots),
-                values_.begin() + static_cast<std::ptrdiff_t>(panel_start_[Index(s)]));
-    const int below = size - pivots;
-    double* const update = updates_.data() + update_start_[Index(s)];
-    for (int j = 0; j < below; ++j) {
-      std::copy_n(&front_[PaddedArea(size, pivots + j) + Index(pivots + j)], below - j,
-                  update + PaddedArea(below, j) + j);
-    }
+    std::copy_n(work_.front.begin(), PaddedArea(size, pivots),
+                values_.begin() + static_cast<std::ptrdiff_t>(plan_.panel_start(s)));
+    StoreUpdate(s, &work_);
   }
+  FindSmallestPivot();
   return true;
 }
 
 template <int kDim>
-void SparseCholesky<kDim>::Assemble(const Matrix& H, const Eigen::VectorXd& added, int s) {
-  const int size = FrontSize(s);
-  ColumnMajor front(front_.data(), size, size, Eigen::OuterStride<>(PaddedRows(size)));
-  const int first = structure_.first_column[Index(s)];
-  for (int k = 0; k < structure_.columns(s); ++k) {
-    const int col = structure_.order[Index(first + k)];
-    auto diagonal = front.template block<kDim, kDim>(kDim * k, kDim * k);
-    diagonal = H.diagonal(col);
-    if (added.size() > 0) diagonal.diagonal() += added.segment<kDim>(kDim * col);
-    for (int i = 0; i < kDim; ++i) {
-      smallest_pivots_[Index(kDim * (first + k) + i)] = kSmallestPivot * diagonal(i, i);
+Definiteness SparseCholesky<kDim>::FactorizeExactly(const ExactMatrix& H,
+                                                    const Eigen::VectorXd& added) {
+  const SymbolicFactor& structure = plan_.structure();
+  assert(H.cols() == static_cast<int>(structure.order.size()));
+  assert(added.size() == 0 || added.size() == kDim * H.cols());
+  Workspace<DoubleDouble> work;
+  MakeRoom(&work);
+  std::vector<double> noise(diagonal_.size(), 0.0);  // that elimination has added, by row
+  std::vector<double> front_noise;
+  Definiteness result = Definiteness::kDefinite;
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const int size = plan_.front_size(s);
+    const int pivots = plan_.pivots(s);
+    Assemble(H, added, s, &work.front);
+    AddUpdates(s, &work);
+    front_noise.resize(Index(size));
+    for (int i = 0; i < size; ++i) {
+      const std::size_t row = RowOfFront(s, i);
+      front_noise[Index(i)] = noise[row] + (i < pivots ? kExactNoise * diagonal_[row] : 0.0);
+    }
+    result = std::max(result,
+                      EliminateExactly(work.front.data(), PaddedRows(size), size, pivots,
+                                       front_noise.data(), values_.data() + plan_.panel_start(s)));
+    if (result == Definiteness::kIndefinite) return result;
+    for (int i = pivots; i < size; ++i) noise[RowOfFront(s, i)] = front_noise[Index(i)];
+    StoreUpdate(s, &work);
+  }
+  FindSmallestPivot();
+  return result;
+}
+
+template <int kDim>
+std::size_t SparseCholesky<kDim>::RowOfFront(int s, int i) const {
+  const SymbolicFactor& structure = plan_.structure();
+  const int block = i / kDim;
+  const int own = structure.columns(s);
+  const int row = block < own ? structure.first_column[Index(s)] + block
+                              : structure.rows[structure.first_row[Index(s)] + Index(block - own)];
+  return Index(kDim * row + i % kDim);
+}
+
+template <int kDim>
+double SparseCholesky<kDim>::LargestNoise() const {
+  const SymbolicFactor& structure = plan_.structure();
+  std::vector<double> noise(diagonal_.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = kNoise * diagonal_[i];
+  double largest = 0.0;
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const int size = plan_.front_size(s);
+    const double* column = panel(s);
+    for (int c = 0; c < plan_.pivots(s); ++c, column += PaddedRows(size)) {
+      const double share = noise[RowOfFront(s, c)] / (column[c] * column[c]);
+      largest = std::max(largest, share);
+      for (int i = c + 1; i < size; ++i) noise[RowOfFront(s, i)] += column[i] * column[i] * share;
     }
   }
-  for (std::size_t k = first_source_[Index(s)]; k < first_source_[Index(s) + 1]; ++k) {
-    const Source& source = sources_[k];
+  return largest;
+}
+
+template <int kDim>
+template <typename Scalar>
+void SparseCholesky<kDim>::Assemble(const SymmetricBlockMatrix<kDim, Scalar>& H,
+                                    const Eigen::VectorXd& added, int s,
+                                    std::vector<Scalar>* front_values) {
+  using Front = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  const SymbolicFactor& structure = plan_.structure();
+  const int size = plan_.front_size(s);
+  std::fill_n(front_values->begin(), PaddedArea(size, size), Scalar(0.0));
+  Eigen::Map<Front, 0, Eigen::OuterStride<>> front(front_values->data(), size, size,
+                                                   Eigen::OuterStride<>(PaddedRows(size)));
+  const int first = structure.first_column[Index(s)];
+  for (int k = 0; k < structure.columns(s); ++k) {
+    const int col = structure.order[Index(first + k)];
+    auto diagonal = front.template block<kDim, kDim>(kDim * k, kDim * k);
+    diagonal = H.diagonal(col);
+    for (int i = 0; i < kDim; ++i) {
+      if (added.size() > 0) diagonal(i, i) += Scalar(added[kDim * col + i]);
+      diagonal_[Index(kDim * (first + k) + i)] = static_cast<double>(diagonal(i, i));
+    }
+  }
+  for (const FrontPlan::Source& source : plan_.sources(s)) {
     auto place = front.template block<kDim, kDim>(kDim * source.front_row, kDim * source.front_col);
     if (source.transposed) {
       place = H.off_diagonal(source.block).transpose();
@@ -184,15 +163,17 @@ void SparseCholesky<kDim>::Assemble(const Matrix& H, const Eigen::VectorXd& adde
 }
 
 template <int kDim>
-void SparseCholesky<kDim>::AddUpdates(int s) {
-  const int ld = PaddedRows(FrontSize(s));
-  for (int child = first_child_[Index(s)]; child != -1; child = sibling_[Index(child)]) {
-    const int count = structure_.row_count(child);
-    const int* const target = &structure_.row_in_parent[structure_.first_row[Index(child)]];
+template <typename Scalar>
+void SparseCholesky<kDim>::AddUpdates(int s, Workspace<Scalar>* work) const {
+  const SymbolicFactor& structure = plan_.structure();
+  const int ld = PaddedRows(plan_.front_size(s));
+  for (int child = plan_.last_child(s); child != -1; child = plan_.sibling(child)) {
+    const int count = structure.row_count(child);
+    const int* const target = &structure.row_in_parent[structure.first_row[Index(child)]];
     const int update_ld = PaddedRows(kDim * count);
-    const double* update = updates_.data() + update_start_[Index(child)];
+    const Scalar* update = work->updates.data() + plan_.update_start(child);
     for (int b = 0; b < count; ++b) {
-      double* front = front_.data() + static_cast<std::ptrdiff_t>(kDim * target[b]) * ld;
+      Scalar* front = work->front.data() + static_cast<std::ptrdiff_t>(kDim * target[b]) * ld;
       for (int j = 0; j < kDim; ++j, front += ld, update += update_ld) {
         // Above the diagonal of the diagonal block nothing is defined, nor needed.
         for (int i = j; i < kDim; ++i) front[kDim * target[b] + i] += update[kDim * b + i];
@@ -204,37 +185,69 @@ void SparseCholesky<kDim>::AddUpdates(int s) {
   }
 }
 
+/// Keeps what elimination has left of the front for its parent.
+template <int kDim>
+template <typename Scalar>
+void SparseCholesky<kDim>::StoreUpdate(int s, Workspace<Scalar>* work) const {
+  const int size = plan_.front_size(s);
+  const int pivots = plan_.pivots(s);
+  const int below = size - pivots;
+  Scalar* const update = work->updates.data() + plan_.update_start(s);
+  for (int j = 0; j < below; ++j) {
+    std::copy_n(&work->front[PaddedArea(size, pivots + j) + Index(pivots + j)], below - j,
+                update + PaddedArea(below, j) + j);
+  }
+}
+
+template <int kDim>
+void SparseCholesky<kDim>::FindSmallestPivot() {
+  const SymbolicFactor& structure = plan_.structure();
+  smallest_pivot_ = std::numeric_limits<double>::infinity();
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const std::ptrdiff_t step = PaddedRows(plan_.front_size(s)) + 1;
+    const double* const diagonal = &diagonal_[Index(kDim * structure.first_column[Index(s)])];
+    for (int i = 0; i < plan_.pivots(s); ++i) {
+      const double root = panel(s)[i * step];
+      smallest_pivot_ = std::min(smallest_pivot_, root * root / diagonal[i]);
+    }
+  }
+}
+
 template <int kDim>
 void SparseCholesky<kDim>::SolveLanes(double* x, int lanes) const {
+  const SymbolicFactor& structure = plan_.structure();
   const int block = lanes * kDim;  // numbers in one block row
   double* const work = solve_work_.data();
-  const auto own = [&](int s) { return x + block * structure_.first_column[Index(s)]; };
-  const auto rows = [&](int s) { return structure_.rows.data() + structure_.first_row[Index(s)]; };
-  for (int s = 0; s < structure_.supernode_count(); ++s) {
-    const int width = structure_.columns(s);
+  const auto own = [&](int s) { return x + block * structure.first_column[Index(s)]; };
+  const auto rows = [&](int s) { return structure.rows.data() + structure.first_row[Index(s)]; };
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const int width = structure.columns(s);
     double* const below = std::copy_n(own(s), block * width, work);
-    std::fill_n(below, block * structure_.row_count(s), 0.0);
-    SolveForward(panel(s), PaddedRows(FrontSize(s)), FrontSize(s), kDim * width, work, lanes);
+    std::fill_n(below, block * structure.row_count(s), 0.0);
+    SolveForward(panel(s), PaddedRows(plan_.front_size(s)), plan_.front_size(s), kDim * width, work,
+                 lanes);
     std::copy_n(work, block * width, own(s));
-    for (int k = 0; k < structure_.row_count(s); ++k) {
+    for (int k = 0; k < structure.row_count(s); ++k) {
       double* const row = x + block * rows(s)[k];
       for (int i = 0; i < block; ++i) row[i] += below[block * k + i];
     }
   }
-  for (int s = structure_.supernode_count() - 1; s >= 0; --s) {
-    const int width = structure_.columns(s);
+  for (int s = structure.supernode_count() - 1; s >= 0; --s) {
+    const int width = structure.columns(s);
     double* below = std::copy_n(own(s), block * width, work);
-    for (int k = 0; k < structure_.row_count(s); ++k) {
+    for (int k = 0; k < structure.row_count(s); ++k) {
       below = std::copy_n(x + block * rows(s)[k], block, below);
     }
-    SolveBackward(panel(s), PaddedRows(FrontSize(s)), FrontSize(s), kDim * width, work, lanes);
+    SolveBackward(panel(s), PaddedRows(plan_.front_size(s)), plan_.front_size(s), kDim * width,
+                  work, lanes);
     std::copy_n(work, block * width, own(s));
   }
 }
 
 template <int kDim>
 Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const {
-  assert(rhs.rows() == kDim * static_cast<Eigen::Index>(structure_.order.size()));
+  const SymbolicFactor& structure = plan_.structure();
+  assert(rhs.rows() == kDim * static_cast<Eigen::Index>(structure.order.size()));
   const int lanes = rhs.cols() == 1 ? 1 : kMostLanes;
   Eigen::MatrixXd result(rhs.rows(), rhs.cols());
   Eigen::MatrixXd x(lanes, rhs.rows());  // in elimination order, right-hand sides side by side
@@ -242,12 +255,12 @@ Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::Matrix
     const Eigen::Index count = std::min<Eigen::Index>(lanes, rhs.cols() - first);
     x.setZero();
     for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
-      const int from = kDim * structure_.order[Index(i / kDim)] + i % kDim;
+      const int from = kDim * structure.order[Index(i / kDim)] + i % kDim;
       for (Eigen::Index k = 0; k < count; ++k) x(k, i) = rhs(from, first + k);
     }
     SolveLanes(x.data(), lanes);
     for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
-      const int to = kDim * structure_.order[Index(i / kDim)] + i % kDim;
+      const int to = kDim * structure.order[Index(i / kDim)] + i % kDim;
       for (Eigen::Index k = 0; k < count; ++k) result(to, first + k) = x(k, i);
     }
   }

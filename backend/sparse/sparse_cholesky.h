@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "backend/sparse/double_double.h"
+#include "backend/sparse/exact_elimination.h"
+#include "backend/sparse/front_plan.h"
 #include "backend/sparse/symbolic_factor.h"
 #include "backend/sparse/symmetric_block_matrix.h"
 
@@ -17,57 +20,70 @@ template <int kDim>
 class SparseCholesky {
  public:
   using Matrix = SymmetricBlockMatrix<kDim>;
-  using Block = typename Matrix::Block;
+  using ExactMatrix = SymmetricBlockMatrix<kDim, DoubleDouble>;
 
-  /// Orders the blocks (minimum degree, for large matrices nested dissection too) and finds the
-  /// structure of the factor. For a matrix that has grown since the last call the order is kept,
-  /// new columns last, while that costs little fill.
+  /// Plans the factorisation of matrices with the pattern of H (see FrontPlan).
   void Analyze(const Matrix& H);
 
   /// Factorises H, plus a diagonal matrix if its entries are given. H must have the pattern that
-  /// was analysed. False if the sum is not positive definite to working precision.
+  /// was analysed. False if the sum is not positive definite, or so close to singular that pivots
+  /// are mostly rounding errors; then there is no factor.
   [[nodiscard]] bool Factorize(const Matrix& H, const Eigen::VectorXd& added = {});
+
+  /// The same with twice the digits, some 20 times slower: for a matrix J^T Omega J that was summed
+  /// up with so many digits the factor is as good as that of an orthogonal factorisation of J. If
+  /// the sum is positive semidefinite there is a factor, too: it holds a variable for each
+  /// direction that is free. Solve gives a zero there, and one of the solutions if there is any.
+  [[nodiscard]] Definiteness FactorizeExactly(const ExactMatrix& H,
+                                              const Eigen::VectorXd& added = {});
 
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
 
+  /// The smallest pivot, as a share of the matrix's diagonal entry in its place: at most one over
+  /// the condition number of the matrix when its diagonal is scaled to 1.
+  double smallest_pivot() const { return smallest_pivot_; }
+
+  /// How wrong a pivot may be, at most, as a share of it, if the matrix's entries are right to a
+  /// few units in the last place of double: the first-order effect of errors of the diagonal on the
+  /// pivots. Takes as long as Solve.
+  double LargestNoise() const;
+
   /// The factor's columns of a supernode, over the rows of its front; the leading dimension is
   /// PaddedRows of the front's size. Above the diagonal nothing is defined.
-  const double* panel(int s) const { return values_.data() + panel_start_[Index(s)]; }
+  const double* panel(int s) const { return values_.data() + plan_.panel_start(s); }
 
-  const SymbolicFactor& structure() const { return structure_; }
+  const SymbolicFactor& structure() const { return plan_.structure(); }
 
  private:
-  /// A block of H below the diagonal and where it goes in its supernode's front.
-  struct Source {
-    int block;
-    int front_row;
-    int front_col;
-    bool transposed;
+  template <typename Scalar>
+  struct Workspace {
+    std::vector<Scalar> front;    // the one being eliminated
+    std::vector<Scalar> updates;  // stack of Schur complements that wait for their parents
   };
 
-  bool KeepOrder(const Matrix& H);
-  void PlaceSources(const Matrix& H);
-  void PlaceMemory();
-  void Assemble(const Matrix& H, const Eigen::VectorXd& added, int s);
-  void AddUpdates(int s);
+  template <typename Scalar>
+  void MakeRoom(Workspace<Scalar>* work) const;
+  template <typename Scalar>
+  void Assemble(const SymmetricBlockMatrix<kDim, Scalar>& H, const Eigen::VectorXd& added, int s,
+                std::vector<Scalar>* front);
+  template <typename Scalar>
+  void AddUpdates(int s, Workspace<Scalar>* work) const;
+  template <typename Scalar>
+  void StoreUpdate(int s, Workspace<Scalar>* work) const;
+  void FindSmallestPivot();
+  /// Row i of a supernode's front, as a row of the matrix in elimination order.
+  std::size_t RowOfFront(int s, int i) const;
   void SolveLanes(double* x, int lanes) const;
 
-  int FrontSize(int s) const { return kDim * (structure_.columns(s) + structure_.row_count(s)); }
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-  SymbolicFactor structure_;
-  double ordered_fill_ = 0.0;    // entries of the factor per block of H when its order was found
-  std::vector<Source> sources_;  // by supernode
-  std::vector<std::size_t> first_source_;  // per supernode, and the end
-  std::vector<int> first_child_;           // per supernode, the last in elimination order
-  std::vector<int> sibling_;               // the one before it
-  std::vector<std::size_t> panel_start_;   // of each supernode's columns in values_
-  std::vector<double> values_;             // the factor
-  std::vector<double> smallest_pivots_;    // a pivot below is rounding noise
-  std::vector<double> front_;              // the one being eliminated
-  std::vector<double> updates_;            // stack of Schur complements that wait for their parents
-  std::vector<std::size_t> update_start_;
+  FrontPlan plan_{kDim};
+  std::vector<double> values_;    // the factor
+  std::vector<double> diagonal_;  // of the matrix, in elimination order
+  double smallest_pivot_ = 0.0;
+  Workspace<double> work_;
+  std::vector<double> smallest_pivots_;     // of one front: a pivot below is rounding noise
   mutable std::vector<double> solve_work_;  // the right-hand sides of one front
 };
 

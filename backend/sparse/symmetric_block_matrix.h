@@ -19,11 +19,12 @@ struct BlockPlace {
 
 /// A sparse symmetric matrix of kDim x kDim blocks of which only the upper triangle is kept. The
 /// blocks are stored in the order in which they were added, so the pattern can grow at any time
-/// without moving what is there: the Hessian of a graph that grows.
-template <int kDim>
+/// without moving what is there: the Hessian of a graph that grows. Scalar is double, or
+/// DoubleDouble where that has too few digits.
+template <int kDim, typename Scalar = double>
 class SymmetricBlockMatrix {
  public:
-  using Block = Eigen::Matrix<double, kDim, kDim>;
+  using Block = Eigen::Matrix<Scalar, kDim, kDim>;
 
   void Clear() {
     diagonal_.clear();

@@ -24,6 +24,10 @@ TEST(WorkerPool, TouchesEveryIndexOnce) {
   }
 }
 
+TEST(WorkerPool, TakesLessThanOneThreadAsOne) {
+  for (int threads : {0, -5}) EXPECT_EQ(WorkerPool(threads).threads(), 1);
+}
+
 TEST(WorkerPool, RunsAllPartsAtTheSameTime) {
   constexpr int kThreads = 4;
   WorkerPool pool(kThreads);

@@ -128,6 +128,36 @@ TEST(RobustOptimizer, GraduatedNonConvexityFindsTheTruthAmongGrossOutliers) {
   }
 }
 
+/// Half of a city's closures are wrong.
+PoseGraph<SE2> CityWithHalfTheClosuresWrong(int nodes, unsigned seed) {
+  PoseGraph<SE2> graph = test_support::ManhattanWorld(nodes, 3, seed);
+  std::mt19937 random(seed);
+  for (Constraint<SE2>& c : graph.constraints) {
+    c.robust = c.to != c.from + 1;
+    if (c.robust && random() % 2 == 0) c.T_from_to = RandomPose<SE2>(&random, 5.0);
+  }
+  return graph;
+}
+
+TEST(RobustOptimizer, GraduatedNonConvexityTakesFewStepsAndEndsNoHigherThanWithout) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const PoseGraph<SE2> start = CityWithHalfTheClosuresWrong(200, seed);
+    OptimizerOptions options;
+    options.loss = {LossKind::kGemanMcClure, 3.0};
+    PoseGraph<SE2> direct = start;
+    const OptimizerResult without = Optimizer<SE2>(options).Optimize(&direct);
+    options.graduated = true;
+    PoseGraph<SE2> graph = start;
+    const OptimizerResult graduated = Optimizer<SE2>(options).Optimize(&graph);
+    EXPECT_LE(graduated.final_error, without.final_error) << "seed " << seed;
+    EXPECT_EQ(graduated.initial_error, without.initial_error);
+    EXPECT_NEAR(TotalError(graph, {options.loss}), graduated.final_error,
+                1e-12 * graduated.final_error);
+    // Stages at most for widths from 1e4 down to 3, of 3 steps, and two descents to the end.
+    EXPECT_LE(graduated.iterations, 50 * 3 + 2 * options.max_iterations) << "seed " << seed;
+  }
+}
+
 TYPED_TEST(RobustOptimizerTest, EdgesNotMarkedRobustStayQuadratic) {
   OptimizerOptions options;
   options.loss = {LossKind::kGemanMcClure, 0.01};

@@ -5,7 +5,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "backend/base/error.h"
 #include "backend/graph/constraint_error.h"
@@ -412,6 +414,66 @@ TEST(Optimizer, ComesRoundTheSphereOnTheManifoldButNotInEulerAngles) {
   }
 }
 
+TYPED_TEST(OptimizerTest, AsksTheObserverAfterEveryStepAndStopsWhereItSays) {
+  using Pose = typename TypeParam::Pose;
+  const PoseGraph<Pose> start = RandomGraph<Pose>(20, 20, 87, 5);
+  this->options_.trace = true;
+  PoseGraph<Pose> graph = start;
+  const OptimizerResult whole = this->Optimize(&graph);
+  ASSERT_GE(whole.iterations, 2);
+  for (int last = 0; last < whole.iterations; ++last) {
+    std::vector<double> errors;
+    graph = start;
+    const OptimizerResult result =
+        Optimizer<Pose>(this->options_).Optimize(&graph, [&](const IterationRecord& record) {
+          errors.push_back(record.error);
+          return static_cast<int>(errors.size()) <= last;
+        });
+    EXPECT_EQ(result.termination, Termination::kCancelled);
+    EXPECT_EQ(result.iterations, last);
+    EXPECT_NEAR(TotalChi2(graph), result.final_error, 1e-12 * result.final_error);
+    ASSERT_EQ(errors.size(), result.trace.size());
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      EXPECT_EQ(errors[i], whole.trace[i].error) << "step " << i;
+    }
+  }
+}
+
+TYPED_TEST(OptimizerTest, LeavesAGraphAloneWhoseErrorOverflows) {
+  using Pose = typename TypeParam::Pose;
+  using Tangent = typename Pose::Tangent;
+  PoseGraph<Pose> graph = RandomGraph<Pose>(5, 2, 90);
+  graph.poses[3] = Pose(Tangent(1e200 * Tangent::Unit(0)));
+  const PoseGraph<Pose> before = graph;
+  for (const LossKind kind : {LossKind::kQuadratic, LossKind::kGemanMcClure, LossKind::kDcs}) {
+    for (Constraint<Pose>& constraint : graph.constraints) constraint.robust = true;
+    this->options_.loss = {kind, 3.0};
+    this->options_.graduated = kind == LossKind::kGemanMcClure;
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_EQ(result.termination, Termination::kNotFinite);
+    EXPECT_TRUE(std::isinf(result.initial_error));
+    EXPECT_TRUE(std::isinf(result.final_error));
+    EXPECT_EQ(graph.poses, before.poses);
+  }
+}
+
+TYPED_TEST(OptimizerTest, ANumberThatIsLargeButNotInfiniteDoesNoHarm) {
+  using Pose = typename TypeParam::Pose;
+  using Tangent = typename Pose::Tangent;
+  for (const double far : {1e20, 1e70, 1e140}) {
+    PoseGraph<Pose> graph = RandomGraph<Pose>(6, 3, 91);
+    graph.poses[3] = Pose(Tangent(far * Tangent::Unit(0)));
+    const OptimizerResult result = this->Optimize(&graph);
+    EXPECT_LE(result.final_error, result.initial_error) << far;
+    for (const Pose& pose : graph.poses) EXPECT_TRUE(pose.IsFinite()) << far;
+    PoseGraph<Pose> huge = RandomGraph<Pose>(6, 3, 91);
+    for (Constraint<Pose>& c : huge.constraints) c.information *= far * far;
+    const OptimizerResult other = this->Optimize(&huge);
+    EXPECT_LE(other.final_error, other.initial_error) << far;
+    for (const Pose& pose : huge.poses) EXPECT_TRUE(pose.IsFinite()) << far;
+  }
+}
+
 TEST(OptimizerOptions, NameWhatIsOutOfRange) {
   const auto message = [](auto change) {
     OptimizerOptions options;
@@ -431,7 +493,12 @@ TEST(OptimizerOptions, NameWhatIsOutOfRange) {
   EXPECT_THAT(message([](auto* o) { o->absolute_decrease = std::nan(""); }),
               HasSubstr("absolute_decrease is nan"));
   EXPECT_THAT(message([](auto* o) { o->threads = 0; }), HasSubstr("threads is 0"));
+  EXPECT_THAT(message([](auto* o) { o->threads = 1000000; }),
+              HasSubstr("threads is 1000000, expected 1 to 1024"));
   EXPECT_THAT(message([](auto* o) { o->loss.width = 0.0; }), HasSubstr("width is 0"));
+  EXPECT_THAT(message([](auto* o) { o->loss.width = 1e-200; }), HasSubstr("width is 1e-200"));
+  EXPECT_THAT(message([](auto* o) { o->loss.width = 1e200; }), HasSubstr("width is 1e+200"));
+  EXPECT_THAT(message([](auto* o) { o->loss.width = std::nan(""); }), HasSubstr("width is nan"));
   EXPECT_THAT(message([](auto* o) { o->graduated = true; }), HasSubstr("graduated"));
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -91,6 +92,53 @@ TEST(FrontalKernels, EliminationStopsAtAPivotThatIsTooSmall) {
   F(2, 2) = std::nan("");
   Padded fourth(F);
   EXPECT_FALSE(EliminateColumns(fourth.data(), fourth.ld, 7, 7, zero.data()));
+}
+
+/// Runs each kernel on random numbers of this size, and returns all that it defines.
+std::vector<double> RunKernels(const FrontalKernels& kernels, int size, int pivots, unsigned seed) {
+  std::srand(seed);
+  std::vector<double> results;
+  const auto add = [&](const Eigen::MatrixXd& matrix) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) results.push_back(matrix(i, j));
+    }
+  };
+  Padded a(Eigen::MatrixXd::Random(size, pivots), 3);
+  Padded b(Eigen::MatrixXd::Random(pivots, size));
+  Padded product(Eigen::MatrixXd::Random(size, size));
+  kernels.multiply_add(product.data(), product.ld, a.data(), a.ld, {b.data(), 1, b.ld}, size, size,
+                       pivots);
+  add(product.matrix());
+  kernels.multiply_subtract(product.data(), product.ld, a.data(), a.ld, {b.data(), 1, b.ld}, size,
+                            size, pivots);
+  add(product.matrix());
+
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(size, size + 2);
+  Padded front(Eigen::MatrixXd(root * root.transpose() + Eigen::MatrixXd::Identity(size, size)));
+  const std::vector<double> smallest(static_cast<std::size_t>(pivots), 0.0);
+  EXPECT_TRUE(kernels.eliminate_columns(front.data(), front.ld, size, pivots, smallest.data()));
+  add(front.matrix().triangularView<Eigen::Lower>());
+  for (const int lanes : {1, kMostLanes}) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Random(lanes, size);
+    kernels.solve_forward(front.data(), front.ld, size, pivots, x.data(), lanes);
+    add(x);
+    kernels.solve_backward(front.data(), front.ld, size, pivots, x.data(), lanes);
+    add(x);
+  }
+  return results;
+}
+
+TEST(FrontalKernels, HaveTheSameBitsWithAvx2AndWithout) {
+  if (Avx2Kernels() == nullptr) GTEST_SKIP() << "this processor has no AVX2";
+  unsigned seed = 0;
+  for (int size = 1; size <= 40; size += size < 14 ? 1 : 7) {
+    for (int pivots = 1; pivots <= size; pivots += size < 14 ? 1 : 5) {
+      ++seed;
+      EXPECT_EQ(RunKernels(BaselineKernels(), size, pivots, seed),
+                RunKernels(*Avx2Kernels(), size, pivots, seed))
+          << size << " columns, " << pivots << " pivots";
+    }
+  }
 }
 
 }  // namespace

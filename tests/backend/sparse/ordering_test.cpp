@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <random>
 #include <set>
@@ -83,9 +84,21 @@ TEST_P(OrderingTest, FillsLessThanTheNaturalOrderOnAGrid) {
   EXPECT_LT(ordered.Operations(), 0.3 * natural.Operations());
 }
 
-TEST_P(OrderingTest, IsTheSameTwice) {
+TEST_P(OrderingTest, NeitherUsesNorDisturbsTheRandomNumbersOfTheProgram) {
+  constexpr int kNumbers = 50;
   const Places grid = Grid(50);
-  EXPECT_EQ(GetParam()(2500, grid), GetParam()(2500, grid));
+  std::srand(11);
+  std::vector<int> undisturbed;
+  for (int k = 0; k < kNumbers; ++k) undisturbed.push_back(std::rand());
+  const std::vector<int> order = GetParam()(2500, grid);
+  for (const int before : {0, 1, 7, 40}) {
+    std::srand(11);
+    std::vector<int> numbers;
+    for (int k = 0; k < before; ++k) numbers.push_back(std::rand());
+    EXPECT_EQ(GetParam()(2500, grid), order) << "after " << before << " random numbers";
+    while (numbers.size() < kNumbers) numbers.push_back(std::rand());
+    EXPECT_EQ(numbers, undisturbed) << "after " << before << " random numbers";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, OrderingTest,

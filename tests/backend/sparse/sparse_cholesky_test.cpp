@@ -198,19 +198,103 @@ TYPED_TEST(PoseGraphCholeskyTest, AgreesWithCholmod) {
   EXPECT_TRUE(x.isApprox(cholmod.Solve(equations.gradient()), 1e-7));
 }
 
-TYPED_TEST(PoseGraphCholeskyTest, GivesTheSameBitsTwice) {
+// Memory that another factorisation has left behind must not show.
+TYPED_TEST(PoseGraphCholeskyTest, HasTheSameBitsWhateverCameBefore) {
   const auto graph = RandomGraph<TypeParam>(300, 150, 37);
-  Eigen::VectorXd solutions[2];
-  for (Eigen::VectorXd& solution : solutions) {
-    NormalEquations<TypeParam> equations;
-    equations.SetStructure(graph);
-    equations.Linearize(graph, {});
-    SparseCholesky<TypeParam::kDof> cholesky;
-    cholesky.Analyze(equations.hessian());
-    ASSERT_TRUE(cholesky.Factorize(equations.hessian()));
-    solution = cholesky.Solve(equations.gradient());
+  NormalEquations<TypeParam> equations;
+  equations.SetStructure(graph);
+  equations.Linearize(graph, {});
+  const auto& H = equations.hessian();
+  SparseCholesky<TypeParam::kDof> fresh;
+  fresh.Analyze(H);
+  ASSERT_TRUE(fresh.Factorize(H));
+  const Eigen::VectorXd expected = fresh.Solve(equations.gradient());
+
+  std::mt19937 random(37);
+  const auto larger = RandomBlockMatrix<TypeParam::kDof>(500, 900, &random);
+  SparseCholesky<TypeParam::kDof> used;
+  used.Analyze(larger);
+  ASSERT_TRUE(used.Factorize(larger));
+  const auto nothing = RandomBlockMatrix<TypeParam::kDof>(1, 0, &random);
+  used.Analyze(nothing);  // so that no order is kept
+  used.Analyze(H);
+  auto broken = H;
+  broken.diagonal(150).setConstant(std::nan(""));
+  EXPECT_FALSE(used.Factorize(broken));
+  ASSERT_TRUE(used.Factorize(H));
+  EXPECT_EQ(used.smallest_pivot(), fresh.smallest_pivot());
+  EXPECT_EQ(used.structure().order, fresh.structure().order);
+  EXPECT_EQ(used.Solve(equations.gradient()), expected);
+}
+
+/// A matrix and the same with twice the digits.
+template <int kDim>
+SymmetricBlockMatrix<kDim, DoubleDouble> Exact(const SymmetricBlockMatrix<kDim>& H) {
+  SymmetricBlockMatrix<kDim, DoubleDouble> exact;
+  exact.Resize(H.cols());
+  for (int i = 0; i < H.cols(); ++i)
+    exact.diagonal(i) = H.diagonal(i).template cast<DoubleDouble>();
+  for (int k = 0; k < H.block_count(); ++k) {
+    const BlockPlace place = H.places()[static_cast<std::size_t>(k)];
+    exact.off_diagonal(exact.FindOrAddBlock(place.row, place.col)) =
+        H.off_diagonal(k).template cast<DoubleDouble>();
   }
-  EXPECT_EQ(solutions[0], solutions[1]);
+  return exact;
+}
+
+TYPED_TEST(SparseCholeskyTest, SolvesWithTwiceTheDigits) {
+  for (int cols = 1; cols <= 40; cols += 3) {
+    const auto H = RandomBlockMatrix<TypeParam::value>(cols, 2 * cols, &this->random_);
+    const Eigen::Index size = TypeParam::value * cols;
+    const Eigen::VectorXd added = Eigen::VectorXd::LinSpaced(size, 0.0, 3.0);
+    typename TestFixture::Cholesky cholesky;
+    cholesky.Analyze(H);
+    ASSERT_EQ(cholesky.FactorizeExactly(Exact(H), added), Definiteness::kDefinite);
+    Eigen::MatrixXd sum = Dense(H);
+    sum.diagonal() += added;
+    const Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(size, 3);
+    EXPECT_TRUE(cholesky.Solve(rhs).isApprox(sum.llt().solve(rhs), 1e-10)) << cols << " columns";
+  }
+}
+
+TYPED_TEST(SparseCholeskyTest, HoldsAVariableOfEachFreeDirection) {
+  constexpr int kDim = TypeParam::value;
+  // J^T J with fewer rows than columns, in one dense matrix of blocks.
+  constexpr int kCols = 6;
+  typename TestFixture::Matrix H;
+  H.Resize(kCols);
+  const Eigen::MatrixXd J =
+      (100.0 * Eigen::MatrixXd::Random(kDim * kCols - 3, kDim * kCols)).array().round();
+  const Eigen::MatrixXd dense = J.transpose() * J;  // of integers: exact
+  for (int i = 0; i < kCols; ++i) {
+    H.diagonal(i) = dense.block<kDim, kDim>(kDim * i, kDim * i);
+    for (int j = i + 1; j < kCols; ++j) {
+      H.off_diagonal(H.FindOrAddBlock(i, j)) = dense.block<kDim, kDim>(kDim * i, kDim * j);
+    }
+  }
+  typename TestFixture::Cholesky cholesky;
+  cholesky.Analyze(H);
+  EXPECT_FALSE(cholesky.Factorize(H));
+  EXPECT_EQ(cholesky.FactorizeExactly(Exact(H)), Definiteness::kSemidefinite);
+  const Eigen::VectorXd rhs = dense * Eigen::VectorXd::Random(dense.rows());
+  const Eigen::VectorXd x = cholesky.Solve(rhs);
+  EXPECT_TRUE((dense * x).isApprox(rhs, 1e-6));
+  EXPECT_EQ((x.array() == 0.0).count(), 3);
+  H.diagonal(2)(1, 1) -= 1e5;
+  EXPECT_EQ(cholesky.FactorizeExactly(Exact(H)), Definiteness::kIndefinite);
+}
+
+TYPED_TEST(SparseCholeskyTest, TellsTheSmallestPivot) {
+  constexpr int kDim = TypeParam::value;
+  typename TestFixture::Matrix H;
+  H.Resize(2);
+  H.diagonal(0).setIdentity();
+  H.diagonal(1) = 4.0 * Eigen::Matrix<double, kDim, kDim>::Identity();
+  H.off_diagonal(H.FindOrAddBlock(0, 1))(1, 1) = 1.6;  // leaves 0.36 of either diagonal entry
+  typename TestFixture::Cholesky cholesky;
+  cholesky.Analyze(H);
+  ASSERT_TRUE(cholesky.Factorize(H));
+  EXPECT_NEAR(cholesky.smallest_pivot(), 0.36, 1e-12);
 }
 
 TYPED_TEST(PoseGraphCholeskyTest, InverseDiagonalAgreesWithDenseInverses) {

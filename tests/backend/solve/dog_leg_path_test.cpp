@@ -1,4 +1,4 @@
-#include "backend/solve/dog_leg.h"
+#include "backend/solve/dog_leg_path.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct Model {
   }
 
   double operator()(const Eigen::VectorXd& x) const { return 2.0 * b.dot(x) + x.dot(H * x); }
-  DogLeg path() const { return DogLeg(cauchy, newton, scale); }
+  DogLegPath path() const { return DogLegPath(cauchy, newton, scale); }
 
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
@@ -34,7 +34,7 @@ struct Model {
   Eigen::VectorXd cauchy;
 };
 
-TEST(DogLeg, IsTheGaussNewtonStepWhereThatIsTrusted) {
+TEST(DogLegPath, IsTheGaussNewtonStepWhereThatIsTrusted) {
   const Model model(1);
   const double length = model.path().Length(model.newton);
   EXPECT_EQ(model.path().PointWithin(std::numeric_limits<double>::infinity()), model.newton);
@@ -42,7 +42,7 @@ TEST(DogLeg, IsTheGaussNewtonStepWhereThatIsTrusted) {
   EXPECT_NE(model.path().PointWithin(0.999 * length), model.newton);
 }
 
-TEST(DogLeg, GoesDownTheSteepestDescentFirst) {
+TEST(DogLegPath, GoesDownTheSteepestDescentFirst) {
   const Model model(2);
   const double length = model.path().Length(model.cauchy);
   const Eigen::VectorXd half = 0.5 * model.cauchy;
@@ -50,10 +50,10 @@ TEST(DogLeg, GoesDownTheSteepestDescentFirst) {
   EXPECT_TRUE(model.path().PointWithin(length).isApprox(model.cauchy, 1e-14));
 }
 
-TEST(DogLeg, ItsPointsAreAsLongAsAllowedAndTheModelFallsAlongIt) {
+TEST(DogLegPath, ItsPointsAreAsLongAsAllowedAndTheModelFallsAlongIt) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const Model model(seed);
-    const DogLeg path = model.path();
+    const DogLegPath path = model.path();
     const double whole = path.Length(model.newton);
     double last = 0.0;
     for (int k = 1; k <= 20; ++k) {

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "backend/base/worker_pool.h"
+#include "backend/graph/pose_graph.h"
+#include "backend/solve/marginals.h"
+#include "backend/solve/normal_equations.h"
+#include "backend/sparse/exact_elimination.h"
+#include "backend/sparse/sparse_cholesky.h"
+
+namespace loopgrid {
+
+/// The linear problem H dx = -b at one point of a graph, and the factor that solves it. The graph
+/// goes through three stages, of which each needs the one before: SetStructure whenever edges,
+/// nodes or held nodes have changed, Linearize wherever poses or the objective have, Factorize
+/// wherever H or the damping has. What was allocated and analysed is used again.
+template <typename Pose>
+class Linearization {
+ public:
+  static constexpr int kDof = Pose::kDof;
+
+  /// `threads` to linearise large graphs; the result does not depend on it.
+  explicit Linearization(int threads) : workers_(threads) {}
+
+  void SetStructure(const PoseGraph<Pose>& graph);
+
+  /// Computes H and b at the graph's poses and landmarks; returns F. The graph has to stay, and to
+  /// be at this point whenever Factorize is called.
+  double Linearize(const PoseGraph<Pose>& graph, const Objective& objective);
+
+  /// Factorises H + damping * diag(scale()). There is a factor unless the result is kIndefinite. If
+  /// it is kSemidefinite, there are directions that F does not depend on; a damping that is too
+  /// weak for any other effect then keeps steps from going along them.
+  [[nodiscard]] Definiteness Factorize(double damping);
+
+  /// Factorises H as well as covariances need it; at once if the factor is that of H already. The
+  /// graph is that of the last Linearize, or equal to it.
+  [[nodiscard]] Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph);
+
+  /// Whether the factor is that of H, positive definite and without damping, where it was
+  /// linearised last.
+  bool has_undamped_factor() const { return has_undamped_factor_; }
+  void InvalidateFactor() { has_undamped_factor_ = false; }
+
+  /// (H + damping * diag(scale))^-1 * v by the last factor, which may be of an earlier point.
+  Eigen::VectorXd Solve(const Eigen::VectorXd& v) const { return factor_.Solve(v); }
+  /// Solve(-b).
+  Eigen::VectorXd Step() const { return factor_.Solve(-gradient()); }
+
+  /// How far the quadratic model without any damping is above its minimum, after Factorize(0) at
+  /// this point, of which `step` is the Step().
+  double UndampedDecrease(const Eigen::VectorXd& step) const {
+    return free_decrease_.value_or(-gradient().dot(step));
+  }
+
+  const Eigen::VectorXd& gradient() const { return equations_.gradient(); }  ///< b, half of F'
+
+  /// v^T H v.
+  double Curvature(const Eigen::VectorXd& v) const { return v.dot(equations_.hessian() * v); }
+
+  /// The Hessian's diagonal (Marquardt's scaling), kept off zero: it may be that no constraint says
+  /// anything about a direction.
+  Eigen::VectorXd Scale() const;
+
+  /// How close to singular the factorised matrix is, see SparseCholesky::smallest_pivot.
+  double smallest_pivot() const { return factor_.smallest_pivot(); }
+
+  int variable_count() const { return equations_.variable_count(); }
+
+  /// Moves the graph's poses and landmarks by increments of the variables.
+  void Move(const Eigen::VectorXd& dx, Parametrization parametrization,
+            PoseGraph<Pose>* graph) const;
+
+  /// The covariances at the point, if has_undamped_factor(). They refer to this object, and are
+  /// valid until it is used again.
+  Marginals<Pose> ComputeMarginals(const PoseGraph<Pose>& graph) const {
+    return Marginals<Pose>(graph, equations_, factor_);
+  }
+
+ private:
+  WorkerPool workers_;
+  NormalEquations<Pose> equations_;
+  SparseCholesky<kDof> factor_;
+  const PoseGraph<Pose>* graph_ = nullptr;  // that was linearised
+  Objective objective_;                     // with which it was
+  bool has_undamped_factor_ = false;
+  std::optional<double> free_decrease_;  // UndampedDecrease, if H is only semidefinite
+};
+
+extern template class Linearization<SE2>;
+extern template class Linearization<SE3>;
+
+}  // namespace loopgrid
