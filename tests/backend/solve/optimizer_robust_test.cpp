@@ -118,14 +118,17 @@ OutlierResult OptimizeWithOutliers(PoseGraph<Pose> graph, double worse, unsigned
 }
 
 TEST(RobustOptimizer, GraduatedNonConvexityFindsTheTruthAmongGrossOutliers) {
-  for (unsigned seed : {1u, 3u, 4u}) {
+  int missed_at_once = 0;  // by the loss as it is: not every start is that bad
+  for (unsigned seed = 1; seed <= 4; ++seed) {
     for (const OutlierResult& result :
          {OptimizeWithOutliers(test_support::ManhattanWorld(120, 3, seed), 4.0, seed),
           OptimizeWithOutliers(test_support::SphereWorld(8, 16, 0.05, seed), 2.0, seed)}) {
       EXPECT_LE(result.graduated, 1.001 * result.from_truth) << "seed " << seed;
-      EXPECT_GT(result.at_once, 1.001 * result.from_truth) << "seed " << seed;
+      EXPECT_LE(result.graduated, result.at_once) << "seed " << seed;
+      if (result.at_once > 1.001 * result.from_truth) ++missed_at_once;
     }
   }
+  EXPECT_GE(missed_at_once, 5);
 }
 
 /// Half of a city's closures are wrong.
