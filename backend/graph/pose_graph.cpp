@@ -6,20 +6,21 @@
 #include <cstddef>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "backend/base/error.h"
+#include "backend/base/index.h"
+#include "backend/graph/information.h"
 
 namespace loopgrid {
 namespace {
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
-
 int FindRoot(std::vector<int>* parent, int node) {
   auto& up = *parent;
-  while (up[Index(node)] != node) {
-    int& above = up[Index(node)];
-    above = up[Index(above)];
+  while (up[ToIndex(node)] != node) {
+    int& above = up[ToIndex(node)];
+    above = up[ToIndex(above)];
     node = above;
   }
   return node;
@@ -29,19 +30,70 @@ void Join(std::vector<int>* parent, int a, int b) {
   a = FindRoot(parent, a);
   b = FindRoot(parent, b);
   // The lower index becomes the root, so that the root is the component's first node.
-  if (a != b) (*parent)[Index(std::max(a, b))] = std::min(a, b);
+  if (a != b) (*parent)[ToIndex(std::max(a, b))] = std::min(a, b);
 }
 
 template <typename Items>
 void RequireIndex(const Items& items, int index, const char* where, std::size_t k,
                   const char* what) {
-  if (index >= 0 && Index(index) < items.size()) return;
+  if (index >= 0 && ToIndex(index) < items.size()) return;
   throw Error(ErrorCode::kInput, fmt::format("{} {} refers to {} {}, but the graph has {}", where,
                                              k, what, index, items.size()));
 }
 
-Error NotFinite(const char* what, std::size_t k) {
+Error NotFinite(const std::string& what, std::size_t k) {
   return Error(ErrorCode::kInput, fmt::format("{} {} is not finite", what, k));
+}
+
+/// `edge()` says which one it is: "constraint 3 from node 1 to node 2".
+template <int kSize, typename NameOfEdge>
+void RequireInformation(const Eigen::Matrix<double, kSize, kSize>& information,
+                        const NameOfEdge& edge) {
+  if (const std::optional<AsymmetricEntry> entry = FindAsymmetry(information)) {
+    const auto [row, column] = *entry;
+    throw Error(ErrorCode::kInput,
+                fmt::format("the information matrix of {} is not symmetric: {:.17g} at ({}, {}), "
+                            "{:.17g} at ({}, {})",
+                            edge(), information(row, column), row, column, information(column, row),
+                            column, row));
+  }
+  if (const std::optional<double> eigenvalue = NegativeEigenvalue(information)) {
+    throw Error(ErrorCode::kInput,
+                fmt::format("the information matrix of {} is not positive semi-definite: its "
+                            "smallest eigenvalue is {:.6g}",
+                            edge(), *eigenvalue));
+  }
+}
+
+template <typename Pose>
+void ValidateConstraint(const PoseGraph<Pose>& graph, std::size_t k) {
+  const Constraint<Pose>& constraint = graph.constraints[k];
+  RequireIndex(graph.poses, constraint.from, "constraint", k, "node");
+  RequireIndex(graph.poses, constraint.to, "constraint", k, "node");
+  if (constraint.from == constraint.to) {
+    throw Error(ErrorCode::kInput,
+                fmt::format("constraint {} joins node {} to itself", k, constraint.from));
+  }
+  if (!constraint.T_from_to.IsFinite() || !constraint.information.allFinite()) {
+    throw NotFinite("constraint", k);
+  }
+  RequireInformation(constraint.information, [&] {
+    return fmt::format("constraint {} from node {} to node {}", k, constraint.from, constraint.to);
+  });
+}
+
+template <typename Pose>
+void ValidateObservation(const PoseGraph<Pose>& graph, std::size_t k) {
+  const LandmarkObservation<Pose>& observation = graph.observations[k];
+  RequireIndex(graph.poses, observation.node, "observation", k, "node");
+  RequireIndex(graph.landmarks, observation.landmark, "observation", k, "landmark");
+  if (!observation.p_node.allFinite() || !observation.information.allFinite()) {
+    throw NotFinite("observation", k);
+  }
+  RequireInformation(observation.information, [&] {
+    return fmt::format("observation {} of landmark {} from node {}", k, observation.landmark,
+                       observation.node);
+  });
 }
 
 }  // namespace
@@ -54,26 +106,8 @@ void Validate(const PoseGraph<Pose>& graph) {
   for (std::size_t i = 0; i < graph.landmarks.size(); ++i) {
     if (!graph.landmarks[i].allFinite()) throw NotFinite("landmark", i);
   }
-  for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
-    const Constraint<Pose>& constraint = graph.constraints[k];
-    RequireIndex(graph.poses, constraint.from, "constraint", k, "node");
-    RequireIndex(graph.poses, constraint.to, "constraint", k, "node");
-    if (constraint.from == constraint.to) {
-      throw Error(ErrorCode::kInput,
-                  fmt::format("constraint {} joins node {} to itself", k, constraint.from));
-    }
-    if (!constraint.T_from_to.IsFinite() || !constraint.information.allFinite()) {
-      throw NotFinite("constraint", k);
-    }
-  }
-  for (std::size_t k = 0; k < graph.observations.size(); ++k) {
-    const LandmarkObservation<Pose>& observation = graph.observations[k];
-    RequireIndex(graph.poses, observation.node, "observation", k, "node");
-    RequireIndex(graph.landmarks, observation.landmark, "observation", k, "landmark");
-    if (!observation.p_node.allFinite() || !observation.information.allFinite()) {
-      throw NotFinite("observation", k);
-    }
-  }
+  for (std::size_t k = 0; k < graph.constraints.size(); ++k) ValidateConstraint(graph, k);
+  for (std::size_t k = 0; k < graph.observations.size(); ++k) ValidateObservation(graph, k);
   for (std::size_t k = 0; k < graph.fixed.size(); ++k) {
     RequireIndex(graph.poses, graph.fixed[k], "fixed node", k, "node");
   }
@@ -106,13 +140,13 @@ std::vector<int> HeldNodes(const PoseGraph<Pose>& graph, const Components& compo
   std::vector<bool> held(of_node.size(), false);
   std::vector<bool> has_fixed(of_node.size(), false);
   for (int node : graph.fixed) {
-    held[Index(node)] = true;
-    has_fixed[Index(of_node[Index(node)])] = true;
+    held[ToIndex(node)] = true;
+    has_fixed[ToIndex(of_node[ToIndex(node)])] = true;
   }
   std::vector<int> nodes;
   for (int node = 0; node < static_cast<int>(of_node.size()); ++node) {
-    const bool is_first = of_node[Index(node)] == node;
-    if (held[Index(node)] || (is_first && !has_fixed[Index(node)])) nodes.push_back(node);
+    const bool is_first = of_node[ToIndex(node)] == node;
+    if (held[ToIndex(node)] || (is_first && !has_fixed[ToIndex(node)])) nodes.push_back(node);
   }
   return nodes;
 }

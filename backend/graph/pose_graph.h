@@ -17,7 +17,7 @@ struct Constraint {
   int from = 0;
   int to = 0;
   Pose T_from_to;  ///< measured pose of `to` in `from`
-  /// Order of Pose::Tangent, in `to`'s measured frame.
+  /// Symmetric and positive semi-definite; order of Pose::Tangent, in `to`'s measured frame.
   Information information = Information::Identity();
   bool robust = false;  ///< may be wrong: the optimiser's robust loss applies to it
 
@@ -54,8 +54,9 @@ struct PoseGraph {
 };
 
 /// Throws Error (kInput) naming the first pose, landmark, constraint or observation that is not
-/// finite, the first whose index is not a node's or landmark's, and the first constraint that joins
-/// a node to itself.
+/// finite, the first that refers to a node or landmark that the graph does not have, the first
+/// constraint that joins a node to itself, and the first information matrix that is not symmetric
+/// or not positive semi-definite (up to kInformationRounding).
 template <typename Pose>
 void Validate(const PoseGraph<Pose>& graph);
 

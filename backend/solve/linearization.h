@@ -76,7 +76,7 @@ class Linearization {
   /// The covariances at the point, if has_undamped_factor(). They refer to this object, and are
   /// valid until it is used again.
   Marginals<Pose> ComputeMarginals(const PoseGraph<Pose>& graph) const {
-    return Marginals<Pose>(graph, equations_, factor_);
+    return Marginals<Pose>(graph, equations_, factor_, objective_.loss);
   }
 
  private:

@@ -15,7 +15,8 @@ namespace loopgrid {
 
 /// Marginal covariances of the nodes and landmarks of a graph: blocks of the inverse Hessian, those
 /// of nodes in each node's own frame, in the order of Pose::Tangent, those of landmarks in the map
-/// frame. Refers to the factor that it is made from.
+/// frame. Refers to the equations and the factor that it is made from. Asking for a node that the
+/// graph does not have is an Error (kInput).
 template <typename Pose>
 class Marginals {
  public:
@@ -24,9 +25,10 @@ class Marginals {
   using Covariance = Eigen::Matrix<double, kDof, kDof>;
   using PointCovariance = Eigen::Matrix<double, kPoint, kPoint>;
 
-  /// `factor` is that of the equations' undamped Hessian, linearised where the graph is.
+  /// `factor` is that of the equations' undamped Hessian, linearised where the graph is, on the
+  /// manifold and with this loss.
   Marginals(const PoseGraph<Pose>& graph, const NormalEquations<Pose>& equations,
-            const SparseCholesky<kDof>& factor);
+            const SparseCholesky<kDof>& factor, const RobustLoss& loss);
 
   /// Of every node relative to the held node of its component; zero for held nodes.
   const std::vector<Covariance>& covariances() const { return covariances_; }
@@ -38,27 +40,38 @@ class Marginals {
   std::vector<Covariance> CrossCovariances(int node) const;
 
   /// Covariance of the first node (rows) with the second (columns) for each pair, in their order:
-  /// one solve for each different second node.
+  /// one solve for each different second node. A pair may come several times.
   std::vector<Covariance> PairCovariances(std::span<const std::pair<int, int>> pairs) const;
 
   /// Of every node relative to `node`: the diagonal blocks of the inverse of H without the rows and
   /// columns of `node` (H_red in Section IV-F of the tutorial); zero for `node` itself. Infinite
-  /// on the diagonal for nodes of other components. They come from the joint covariance with the
-  /// held node, which is no approximation: the errors do not change when all nodes move together,
-  /// so H has these motions in its null space, and changing the node that is held is linear. Only
-  /// with several fixed nodes in a component do they differ: those are then known exactly.
+  /// on the diagonal for nodes of other components.
+  ///
+  /// They come from the joint covariance with the held node, by one solve. This is no
+  /// approximation: the errors do not change when all nodes move together, so H has these motions
+  /// in its null space, and changing the node that is held is linear. But far from the held node
+  /// the difference of two large covariances may be small. Where it would lose more than half of
+  /// the digits, the graph is linearised and factorised again with `node` held.
+  ///
+  /// With several fixed nodes in the component of `node` all of them stay where they are, and
+  /// there is no second factorisation.
   std::vector<Covariance> RelativeTo(int node) const;
 
-  /// Of every landmark relative to `node`, in the map frame. Infinite on the diagonal where no node
-  /// of the same component has seen it.
+  /// Of every landmark relative to `node`, in the map frame, computed likewise. Infinite on the
+  /// diagonal where no node of the same component has seen it.
   std::vector<PointCovariance> LandmarksRelativeTo(int node) const;
 
  private:
   /// The columns of the inverse that belong to a node; empty if it is held.
   Eigen::MatrixXd ColumnsOf(int node) const;
+  void RequireNode(int node) const;
+  /// Relative to `node`, as differences of covariances with the held node; nothing is said about
+  /// other components. `are_exact` becomes false where too many digits are lost.
+  std::vector<Covariance> Differences(int node, bool* are_exact) const;
+  std::vector<PointCovariance> LandmarkDifferences(int node, bool* are_exact) const;
 
-  std::vector<Pose> poses_;
-  std::vector<typename Pose::Point> landmarks_;
+  PoseGraph<Pose> graph_;
+  RobustLoss loss_;
   const NormalEquations<Pose>* equations_;
   const SparseCholesky<kDof>* factor_;
   std::vector<Covariance> covariances_;

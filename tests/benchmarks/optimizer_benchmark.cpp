@@ -81,7 +81,7 @@ void RelativeToLast(benchmark::State& state, const PoseGraph<Pose>& graph) {
   const int last = static_cast<int>(graph.poses.size()) - 1;
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        Marginals<Pose>(graph, system.equations, system.factor).RelativeTo(last));
+        Marginals<Pose>(graph, system.equations, system.factor, {}).RelativeTo(last));
   }
 }
 

@@ -50,6 +50,16 @@ TEST(Validate, AcceptsEmptyGraphsLoneNodesAndDuplicateConstraints) {
   Validate(GraphWithEdges(3, {{0, 1}, {0, 1}, {1, 0}}));
 }
 
+TEST(Validate, AcceptsInformationThatIsOffByRounding) {
+  PoseGraph<SE2> graph = GraphWithEdges(2, {{0, 1}});
+  Eigen::Matrix3d& information = graph.constraints[0].information;
+  information = Eigen::Vector3d(1e6, 1e6, -1e-5).asDiagonal();
+  information(0, 1) = 1e-4;
+  Validate(graph);
+  information.setZero();
+  Validate(graph);
+}
+
 TEST(Validate, NamesWhatIsWrong) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -71,9 +81,26 @@ TEST(Validate, NamesWhatIsWrong) {
          g->fixed = {0, 3};
        },
        "fixed node 1 refers to node 3"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[1].information(0, 2) = 0.25; },
+       "the information matrix of constraint 1 from node 1 to node 2 is not symmetric: 0.25 at (0, "
+       "2), 0 at (2, 0)"},
+      {[&](PoseGraph<SE2>* g) { g->constraints[0].information(2, 2) = -3.0; },
+       "the information matrix of constraint 0 from node 0 to node 1 is not positive "
+       "semi-definite: its smallest eigenvalue is -3"},
+      {[&](PoseGraph<SE2>* g) { g->observations[0].information(0, 1) = 1e-3; },
+       "the information matrix of observation 0 of landmark 0 from node 2 is not symmetric: 0.001 "
+       "at (0, 1), 0 at (1, 0)"},
+      {[&](PoseGraph<SE2>* g) { g->observations[0].information << 1.0, 2.0, 2.0, 1.0; },
+       "the information matrix of observation 0 of landmark 0 from node 2 is not positive "
+       "semi-definite: its smallest eigenvalue is -1"},
+      {[&](PoseGraph<SE2>* g) { g->observations[0].landmark = 1; },
+       "observation 0 refers to landmark 1"},
   };
   for (const Case& c : cases) {
     PoseGraph<SE2> graph = GraphWithEdges(3, {{0, 1}, {1, 2}});
+    graph.landmarks.emplace_back(1.0, 2.0);
+    graph.observations.push_back({2, 0, Eigen::Vector2d(1.0, 2.0)});
+    Validate(graph);
     c.spoil(&graph);
     try {
       Validate(graph);

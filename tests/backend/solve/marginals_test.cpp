@@ -4,9 +4,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "backend/base/error.h"
+#include "backend/base/index.h"
 #include "backend/solve/optimizer.h"
 #include "tests/support/expect_marginals.h"
 #include "tests/support/graphs.h"
@@ -18,8 +21,6 @@ using test_support::DenseHessian;
 using test_support::InverseWithout;
 using test_support::RandomGraph;
 using test_support::StarGraph;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 template <typename Pose>
 class MarginalsTest : public ::testing::Test {
@@ -37,7 +38,7 @@ class MarginalsTest : public ::testing::Test {
     const Eigen::MatrixXd expected = InverseWithout(DenseHessian(graph), {node}, kDof);
     for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
       const Covariance block = expected.block<kDof, kDof>(kDof * i, kDof * i);
-      EXPECT_LE(((*covariances)[Index(i)] - block).norm(), tolerance * block.norm())
+      EXPECT_LE(((*covariances)[ToIndex(i)] - block).norm(), tolerance * block.norm())
           << "node " << i << " relative to " << node;
     }
   }
@@ -96,7 +97,7 @@ TYPED_TEST(MarginalsTest, RelativeToANodeDoNotDependOnWhichSingleNodeIsFixed) {
   const auto covariances = RelativeCovariances(graph, 12);
   ASSERT_TRUE(expected && covariances);
   for (int i = 0; i < 30; ++i) {
-    EXPECT_TRUE((*covariances)[Index(i)].isApprox((*expected)[Index(i)], 1e-8)) << i;
+    EXPECT_TRUE((*covariances)[ToIndex(i)].isApprox((*expected)[ToIndex(i)], 1e-8)) << i;
   }
 }
 
@@ -119,13 +120,13 @@ TYPED_TEST(MarginalsTest, AreInfiniteBetweenComponents) {
   const auto expected = RelativeCovariances(other, 3);
   ASSERT_TRUE(covariances && expected);
   for (int i = 0; i < 10; ++i) {
-    const auto& block = (*covariances)[Index(i)];
+    const auto& block = (*covariances)[ToIndex(i)];
     for (int k = 0; k < TypeParam::kDof; ++k) EXPECT_TRUE(std::isinf(block(k, k)));
     EXPECT_EQ(block(0, 1), 0.0);
   }
   for (int i = 0; i < 8; ++i) {
-    const auto difference = ((*covariances)[Index(i + 10)] - (*expected)[Index(i)]).eval();
-    EXPECT_LE(difference.norm(), 1e-10 * (*expected)[Index(i)].norm());
+    const auto difference = ((*covariances)[ToIndex(i + 10)] - (*expected)[ToIndex(i)]).eval();
+    EXPECT_LE(difference.norm(), 1e-10 * (*expected)[ToIndex(i)].norm());
   }
 }
 
@@ -153,9 +154,134 @@ TYPED_TEST(MarginalsTest, OfLoneNodesAreTrivial) {
 }
 
 TYPED_TEST(MarginalsTest, OfNodesThatAreNotThereAreErrors) {
-  const auto graph = RandomGraph<TypeParam>(5, 0, 71);
-  EXPECT_THROW(RelativeCovariances(graph, 5), Error);
-  EXPECT_THROW(RelativeCovariances(graph, -1), Error);
+  const auto graph = RandomGraph<TypeParam>(5, 0, 71, 2);
+  Optimizer<TypeParam> optimizer;
+  const auto marginals = optimizer.ComputeMarginals(graph);
+  ASSERT_TRUE(marginals);
+  for (int node : {-1, 5, 1 << 30}) {
+    const auto expect_error = [node](const auto& ask) {
+      try {
+        ask();
+        ADD_FAILURE() << "node " << node << " is accepted";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kInput);
+        EXPECT_EQ(error.what(),
+                  "node " + std::to_string(node) + " is asked for, but the graph has 5 nodes");
+      }
+    };
+    using Pairs = std::vector<std::pair<int, int>>;
+    expect_error([&] { RelativeCovariances(graph, node); });
+    expect_error([&] { marginals->RelativeTo(node); });
+    expect_error([&] { marginals->LandmarksRelativeTo(node); });
+    expect_error([&] { marginals->CrossCovariances(node); });
+    expect_error([&] { marginals->PairCovariances(Pairs{{1, 2}, {node, 2}}); });
+    expect_error([&] { marginals->PairCovariances(Pairs{{1, 2}, {2, node}}); });
+  }
+}
+
+TYPED_TEST(MarginalsTest, OfThePairThatIsAskedForTwiceAreGivenTwice) {
+  const auto graph = RandomGraph<TypeParam>(9, 4, 72);
+  Optimizer<TypeParam> optimizer;
+  const auto marginals = optimizer.ComputeMarginals(graph);
+  ASSERT_TRUE(marginals);
+  const std::vector<std::pair<int, int>> pairs = {{3, 5}, {2, 5}, {3, 5}, {5, 3}, {3, 3}, {0, 3}};
+  const auto blocks = marginals->PairCovariances(pairs);
+  ASSERT_EQ(blocks.size(), pairs.size());
+  EXPECT_EQ(blocks[0], blocks[2]);
+  EXPECT_EQ(blocks[1], marginals->CrossCovariances(5)[2]);
+  EXPECT_TRUE(blocks[3].isApprox(blocks[0].transpose(), 1e-12));
+  EXPECT_TRUE(blocks[4].isApprox(marginals->covariances()[3], 1e-12));
+  EXPECT_TRUE(blocks[5].isZero(0.0));
+}
+
+/// A chain of steps of a metre, each 1 cm and `angle` radians uncertain, that bends to and fro; the
+/// poses are where the steps lead.
+template <typename Pose>
+PoseGraph<Pose> LongChain(int nodes, double angle) {
+  PoseGraph<Pose> graph;
+  graph.poses.emplace_back();
+  typename Pose::Tangent deviations = Pose::Tangent::Constant(0.01);
+  deviations.template tail<Pose::kDof - Pose::Point::RowsAtCompileTime>().setConstant(angle);
+  const typename Pose::Tangent weights = deviations.array().square().inverse();
+  for (int i = 1; i < nodes; ++i) {
+    typename Pose::Tangent step = Pose::Tangent::Zero();
+    step[0] = 1.0;
+    step[Pose::kDof - 1] = 0.02 * std::sin(0.01 * i);
+    Constraint<Pose> link;
+    link.from = i - 1;
+    link.to = i;
+    link.T_from_to = Pose().Boxplus(step);
+    link.information = weights.asDiagonal();
+    graph.poses.push_back(graph.poses.back() * link.T_from_to);
+    graph.constraints.push_back(link);
+  }
+  return graph;
+}
+
+TYPED_TEST(MarginalsTest, RelativeToTheEndOfALongChainAreSumsOverItsSteps) {
+  using Block = typename TestFixture::Covariance;
+  // Variances relative to the first node are 1e10 times those from one node to the next, so that a
+  // difference of them would keep two or three digits.
+  const auto graph = LongChain<TypeParam>(TypeParam::kDof == 3 ? 10000 : 5000, 0.002);
+  const int last = static_cast<int>(graph.poses.size()) - 1;
+  const auto relative = RelativeCovariances(graph, last);
+  ASSERT_TRUE(relative);
+  Block expected = Block::Zero();
+  for (int i = last - 1; i >= 0; --i) {
+    // Each step's error moves all nodes before it alike, seen from the last.
+    const Constraint<TypeParam>& link = graph.constraints[ToIndex(i)];
+    const Block A = link.T_from_to.Adjoint();
+    expected = (A * (expected + link.information.inverse()) * A.transpose()).eval();
+    const Block& found = (*relative)[ToIndex(i)];
+    for (int k = 0; k < TypeParam::kDof; ++k) {
+      ASSERT_NEAR(found(k, k), expected(k, k), 1e-4 * expected(k, k)) << "node " << i;
+    }
+  }
+}
+
+TYPED_TEST(MarginalsTest, RelativeToANodeAreThoseWithItHeldWhereDigitsWouldBeLost) {
+  // A chain with closures, landmarks and a robust loss, more than 1e8 times more uncertain at its
+  // end than from one node to the next.
+  auto graph = LongChain<TypeParam>(3000, 0.02);
+  RobustLoss loss;
+  loss.kind = LossKind::kHuber;
+  for (int i = 0; i + 10 < 3000; i += 100) {
+    Constraint<TypeParam> closure = graph.constraints[0];
+    closure.from = i;
+    closure.to = i + 10;
+    closure.robust = true;
+    const auto T = graph.poses[ToIndex(i)].Inverse() * graph.poses[ToIndex(i + 10)];
+    closure.T_from_to = T.Boxplus(TypeParam::Tangent::Constant(0.001 * (i % 7) * (i % 3)));
+    graph.constraints.push_back(closure);
+    LandmarkObservation<TypeParam> observation;
+    observation.node = i;
+    observation.landmark = i / 100;
+    observation.p_node.setConstant(2.0);
+    observation.information *= 1e4;
+    graph.landmarks.push_back(graph.poses[ToIndex(i)] * observation.p_node);
+    graph.observations.push_back(observation);
+  }
+  const int node = 2995;
+  PoseGraph<TypeParam> held = graph;
+  held.fixed = {node};
+  OptimizerOptions options;
+  options.loss = loss;
+  Optimizer<TypeParam> optimizer(options);
+  Optimizer<TypeParam> other(options);
+  const auto marginals = optimizer.ComputeMarginals(graph);
+  const auto expected = other.ComputeMarginals(held);
+  ASSERT_TRUE(marginals && expected);
+  const auto relative = marginals->RelativeTo(node);
+  for (std::size_t i = 0; i < graph.poses.size(); ++i) {
+    const auto& block = expected->covariances()[i];
+    ASSERT_LE((relative[i] - block).norm(), 1e-9 * block.norm()) << "node " << i;
+  }
+  const auto landmarks = marginals->LandmarksRelativeTo(node);
+  for (std::size_t i = 0; i < graph.landmarks.size(); ++i) {
+    const auto& block = expected->landmark_covariances()[i];
+    // The nearest is 95 steps away: differences may keep enough digits, and are taken then.
+    ASSERT_LE((landmarks[i] - block).norm(), 1e-5 * block.norm()) << "landmark " << i;
+  }
 }
 
 TYPED_TEST(MarginalsTest, CarriedAlongAChainAreThoseOfANewFactorisation) {
@@ -196,8 +322,8 @@ TEST(RelativeCovariances, GrowAlongAChainByTheCovarianceOfEachStep) {
   const auto covariances = RelativeCovariances(graph, 10);
   ASSERT_TRUE(covariances);
   for (int i = 0; i <= 10; ++i) {
-    EXPECT_NEAR((*covariances)[Index(i)](0, 0), (10 - i) / 4.0, 1e-6);
-    EXPECT_NEAR((*covariances)[Index(i)](1, 1), (10 - i) / 25.0, 1e-6);
+    EXPECT_NEAR((*covariances)[ToIndex(i)](0, 0), (10 - i) / 4.0, 1e-6);
+    EXPECT_NEAR((*covariances)[ToIndex(i)](1, 1), (10 - i) / 25.0, 1e-6);
   }
   EXPECT_TRUE(covariances->back().isZero(0.0));
 }
