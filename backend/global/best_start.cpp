@@ -33,6 +33,18 @@ InitialGuess SetGuess(InitialGuess guess, PoseGraph<Pose>* graph) {
   return guess;
 }
 
+/// Two starts are the same if they differ by less than this: a share of the mean length of the
+/// constraints for positions, and radians (in 3D half of that) for rotations. What six digits in a
+/// file take from the poses that a spanning tree gives is less.
+constexpr double kSameStart = 1e-3;
+
+template <typename Pose>
+double MeanLength(const PoseGraph<Pose>& graph) {
+  double sum = 0.0;
+  for (const Constraint<Pose>& c : graph.constraints) sum += c.T_from_to.translation().norm();
+  return sum / static_cast<double>(std::max<std::size_t>(1, graph.constraints.size()));
+}
+
 template <typename Pose>
 class StartSearch {
  public:
@@ -41,6 +53,7 @@ class StartSearch {
         optimizer_(optimizer),
         expected_error_(static_cast<double>(DegreesOfFreedom(*graph, ConnectedComponents(*graph)))),
         is_sum_of_squares_(IsSumOfSquares(*graph, optimizer->options())),
+        same_distance_(kSameStart * MeanLength(*graph)),
         own_{graph->poses, graph->landmarks} {}
 
   BestStartResult Run() && {
@@ -48,10 +61,9 @@ class StartSearch {
     for (InitialGuess start :
          {InitialGuess::kChordal, InitialGuess::kSpanningTree, InitialGuess::kNone}) {
       if (is_settled_) break;
-      if (WasTried(start)) continue;
       Set(own_);
       const InitialGuess guess = SetGuess(start, graph_);
-      if (!WasTried(guess)) Try(guess);
+      if (!WasTried()) Try(guess);
     }
     Set(best_);
     return std::move(result_);
@@ -68,9 +80,23 @@ class StartSearch {
     graph_->landmarks = state.landmarks;
   }
 
-  bool WasTried(InitialGuess start) const {
-    return std::ranges::any_of(result_.trials,
-                               [=](const StartTrial& trial) { return trial.start == start; });
+  bool IsSame(const State& start) const {
+    constexpr int kDim = Pose::Point::RowsAtCompileTime;
+    const auto is_same_pose = [this](const Pose& a, const Pose& b) {
+      const typename Pose::Tangent difference = a.Boxminus(b);
+      return difference.template head<kDim>().norm() <= same_distance_ &&
+             difference.template tail<Pose::kDof - kDim>().norm() <= kSameStart;
+    };
+    const auto is_same_point = [this](const auto& a, const auto& b) {
+      return (a - b).norm() <= same_distance_;
+    };
+    return std::ranges::equal(start.poses, graph_->poses, is_same_pose) &&
+           std::ranges::equal(start.landmarks, graph_->landmarks, is_same_point);
+  }
+
+  /// Whether an optimisation has begun where the graph is.
+  bool WasTried() const {
+    return std::ranges::any_of(starts_, [this](const State& start) { return IsSame(start); });
   }
 
   InitialGuess SetFirstGuess() {
@@ -84,6 +110,7 @@ class StartSearch {
   }
 
   void Try(InitialGuess start) {
+    starts_.push_back({graph_->poses, graph_->landmarks});
     result_.trials.push_back({start, optimizer_->Optimize(graph_)});
     const double error = result_.trials.back().result.final_error;
     const std::size_t last = result_.trials.size() - 1;
@@ -101,8 +128,10 @@ class StartSearch {
   Optimizer<Pose>* optimizer_;
   double expected_error_;
   bool is_sum_of_squares_;
+  double same_distance_;  // metres
   State own_;
   State best_;
+  std::vector<State> starts_;  // of the trials
   bool is_settled_ = false;
   BestStartResult result_;
 };

@@ -38,8 +38,9 @@ struct BestStartResult {
 /// graph's own poses if F there is no more than expected, or otherwise, of these and the chordal
 /// guess, from where F is lower. As long as the lowest end found cannot be told to be the global
 /// optimum, the other starts are tried too; where there is no certificate, as long as F there is
-/// more than expected, which is the number of degrees of freedom. A spanning tree takes the place
-/// of a chordal guess that does not exist. Throws as Optimizer::Optimize does.
+/// more than expected, which is the number of degrees of freedom. Starts at (nearly) the same poses
+/// as one that has been tried are left out. A spanning tree takes the place of a chordal guess that
+/// does not exist. Throws as Optimizer::Optimize does.
 template <typename Pose>
 BestStartResult OptimizeFromBestStart(PoseGraph<Pose>* graph, Optimizer<Pose>* optimizer,
                                       InitialGuess start = InitialGuess::kAuto);

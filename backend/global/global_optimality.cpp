@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "backend/base/index.h"
 #include "backend/global/quadratic_minorant.h"
 #include "backend/graph/constraint_error.h"
 #include "backend/solve/optimizer.h"
@@ -25,8 +26,6 @@ constexpr double kAbsoluteGap = 1e-9;
 /// arithmetic goes.
 constexpr int kPolishingSteps = 5;
 constexpr double kPolished = 1e-14;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 /// The sum of the minorants as a function of v, the change of the pose matrices X = (R, t) of the
 /// nodes that are not held and of the landmarks (of which only t counts). The rows of X do not mix.
@@ -64,7 +63,7 @@ DualProblem<Pose>::DualProblem(const PoseGraph<Pose>& graph, MinorantOf3dRotatio
     : variable_of_node_(graph.poses.size(), 0), variable_of_landmark_(graph.landmarks.size(), -1) {
   const Components components = ConnectedComponents(graph);
   int count = 0;
-  for (int node : HeldNodes(graph, components)) variable_of_node_[Index(node)] = -1;
+  for (int node : HeldNodes(graph, components)) variable_of_node_[ToIndex(node)] = -1;
   for (int& variable : variable_of_node_) variable = variable < 0 ? -1 : count++;
   for (std::size_t i = 0; i < variable_of_landmark_.size(); ++i) {
     if (components.of_landmark[i] >= 0) variable_of_landmark_[i] = count++;
@@ -72,14 +71,15 @@ DualProblem<Pose>::DualProblem(const PoseGraph<Pose>& graph, MinorantOf3dRotatio
   S_.Resize(count);
   gradient_.setZero(kBlock * count, kDim);
   for (const Constraint<Pose>& c : graph.constraints) {
-    const Pose& to = graph.poses[Index(c.to)];
-    Add(variable_of_node_[Index(c.from)], variable_of_node_[Index(c.to)],
-        graph.poses[Index(c.from)], to.rotation(), to.translation(), Minorize(graph, c, kind));
+    const Pose& to = graph.poses[ToIndex(c.to)];
+    Add(variable_of_node_[ToIndex(c.from)], variable_of_node_[ToIndex(c.to)],
+        graph.poses[ToIndex(c.from)], to.rotation(), to.translation(), Minorize(graph, c, kind));
   }
   for (const LandmarkObservation<Pose>& observation : graph.observations) {
-    Add(variable_of_node_[Index(observation.node)],
-        variable_of_landmark_[Index(observation.landmark)], graph.poses[Index(observation.node)],
-        Matrix::Zero(), graph.landmarks[Index(observation.landmark)], Minorize(graph, observation));
+    Add(variable_of_node_[ToIndex(observation.node)],
+        variable_of_landmark_[ToIndex(observation.landmark)],
+        graph.poses[ToIndex(observation.node)], Matrix::Zero(),
+        graph.landmarks[ToIndex(observation.landmark)], Minorize(graph, observation));
   }
   AddMultipliers(graph);
 }

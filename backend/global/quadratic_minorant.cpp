@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "backend/base/index.h"
 #include "backend/graph/constraint_error.h"
 
 namespace loopgrid {
@@ -16,8 +17,6 @@ constexpr double kRegular = 1e-12;
 
 /// In 2D, radians: beyond it an angle has no useful minorant that touches.
 constexpr double kLargestAngle = std::numbers::pi - 1e-3;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 template <typename Derived>
 double SmallestEigenvalue(const Eigen::MatrixBase<Derived>& matrix) {
@@ -100,7 +99,7 @@ QuadraticMinorant<Pose> Minorize(const PoseGraph<Pose>& graph, const Constraint<
   constexpr int kDim = QuadraticMinorant<Pose>::kDim;
   constexpr int kTurns = Pose::kDof - kDim;
   const typename Pose::Tangent error =
-      ConstraintError(graph.poses[Index(c.from)], graph.poses[Index(c.to)], c.T_from_to);
+      ConstraintError(graph.poses[ToIndex(c.from)], graph.poses[ToIndex(c.to)], c.T_from_to);
   // Omega = (alpha I, omega) + a rest that is positive semi-definite, so that it is above its
   // tangent, which is linear in the error.
   const double share = UncorrelatedShare<kDim, Pose::kDof>(c.information);
@@ -134,8 +133,8 @@ template <typename Pose>
 QuadraticMinorant<Pose> Minorize(const PoseGraph<Pose>& graph,
                                  const LandmarkObservation<Pose>& observation) {
   const typename Pose::Point error =
-      ObservationError(graph.poses[Index(observation.node)],
-                       graph.landmarks[Index(observation.landmark)], observation.p_node);
+      ObservationError(graph.poses[ToIndex(observation.node)],
+                       graph.landmarks[ToIndex(observation.landmark)], observation.p_node);
   QuadraticMinorant<Pose> minorant;
   minorant.alpha = SmallestEigenvalue(observation.information);
   minorant.beta = observation.information * error - minorant.alpha * (error + observation.p_node);

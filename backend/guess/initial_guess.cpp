@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "backend/base/index.h"
 #include "backend/graph/constraint_error.h"
 #include "backend/sparse/sparse_cholesky.h"
 #include "backend/sparse/symmetric_block_matrix.h"
@@ -27,8 +28,6 @@ template <typename Pose>
 constexpr int kDim = Pose::Point::RowsAtCompileTime;
 template <typename Pose>
 using Matrix = Eigen::Matrix<double, kDim<Pose>, kDim<Pose>>;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 SE2 MakePose(const Eigen::Matrix2d& R, const Eigen::Vector2d& t) {
   return {t.x(), t.y(), std::atan2(R(1, 0), R(0, 0))};
@@ -83,8 +82,8 @@ class TreeBuilder {
     lengths_.reserve(graph.constraints.size());
     for (const Constraint<Pose>& constraint : graph.constraints) {
       const int k = static_cast<int>(lengths_.size());
-      links_of_node_[Index(constraint.from)].push_back(k);
-      links_of_node_[Index(constraint.to)].push_back(k);
+      links_of_node_[ToIndex(constraint.from)].push_back(k);
+      links_of_node_[ToIndex(constraint.to)].push_back(k);
       lengths_.push_back(Length(constraint));
     }
     tree_.link.assign(graph.poses.size(), -1);
@@ -94,7 +93,7 @@ class TreeBuilder {
     for (int node : HeldNodes(graph_, ConnectedComponents(graph_))) AddRoot(node);
     Grow();
     for (int node = 0; node < static_cast<int>(graph_.poses.size()); ++node) {
-      if (is_done_[Index(node)]) continue;
+      if (is_done_[ToIndex(node)]) continue;
       AddRoot(node);
       Grow();
     }
@@ -105,7 +104,7 @@ class TreeBuilder {
   using Reached = std::pair<Distance, int>;  // ties go to the lower node
 
   void AddRoot(int node) {
-    distance_[Index(node)] = {};
+    distance_[ToIndex(node)] = {};
     reached_.push({{}, node});
   }
 
@@ -113,20 +112,20 @@ class TreeBuilder {
     while (!reached_.empty()) {
       const int node = reached_.top().second;
       reached_.pop();
-      if (is_done_[Index(node)]) continue;
-      is_done_[Index(node)] = true;
+      if (is_done_[ToIndex(node)]) continue;
+      is_done_[ToIndex(node)] = true;
       tree_.order.push_back(node);
-      for (int k : links_of_node_[Index(node)]) Reach(node, k);
+      for (int k : links_of_node_[ToIndex(node)]) Reach(node, k);
     }
   }
 
   void Reach(int node, int k) {
-    const Constraint<Pose>& constraint = graph_.constraints[Index(k)];
+    const Constraint<Pose>& constraint = graph_.constraints[ToIndex(k)];
     const int other = constraint.from == node ? constraint.to : constraint.from;
-    const Distance distance = distance_[Index(node)] + lengths_[Index(k)];
-    if (is_done_[Index(other)] || distance >= distance_[Index(other)]) return;
-    distance_[Index(other)] = distance;
-    tree_.link[Index(other)] = k;
+    const Distance distance = distance_[ToIndex(node)] + lengths_[ToIndex(k)];
+    if (is_done_[ToIndex(other)] || distance >= distance_[ToIndex(other)]) return;
+    distance_[ToIndex(other)] = distance;
+    tree_.link[ToIndex(other)] = k;
     reached_.push({distance, other});
   }
 
@@ -144,7 +143,7 @@ void PlaceLandmarks(PoseGraph<Pose>* graph) {
   std::vector<const LandmarkObservation<Pose>*> best(graph->landmarks.size(), nullptr);
   std::vector<std::pair<bool, double>> doubt(best.size(), {true, kInfinity});
   for (const LandmarkObservation<Pose>& observation : graph->observations) {
-    const std::size_t landmark = Index(observation.landmark);
+    const std::size_t landmark = ToIndex(observation.landmark);
     const std::pair<bool, double> its{observation.robust, TotalVariance(observation.information)};
     if (best[landmark] != nullptr && its >= doubt[landmark]) continue;
     best[landmark] = &observation;
@@ -152,15 +151,25 @@ void PlaceLandmarks(PoseGraph<Pose>* graph) {
   }
   for (std::size_t i = 0; i < best.size(); ++i) {
     if (best[i] == nullptr) continue;
-    graph->landmarks[i] = graph->poses[Index(best[i]->node)] * best[i]->p_node;
+    graph->landmarks[i] = graph->poses[ToIndex(best[i]->node)] * best[i]->p_node;
   }
+}
+
+/// What a constraint or observation counts that may be wrong, against the others: so little that
+/// some hundreds of wrong ones hardly bend what the others say, and enough to place nodes that
+/// nothing else joins to the rest.
+constexpr double kWeightIfRobust = 1e-6;
+
+template <typename Edge>
+double WeightOf(const Edge& edge) {
+  return edge.robust ? kWeightIfRobust : 1.0;
 }
 
 /// Of a constraint's rotation, one number: with more, matrices that are no rotations become cheap.
 template <typename Pose>
 double RotationWeight(const Constraint<Pose>& constraint) {
   constexpr int kTurns = Pose::kDof - kDim<Pose>;
-  return constraint.information.diagonal().template tail<kTurns>().mean();
+  return WeightOf(constraint) * constraint.information.diagonal().template tail<kTurns>().mean();
 }
 
 /// The rotation nearest to a matrix in the Frobenius norm.
@@ -232,17 +241,17 @@ bool SolveRotations(const SpanningTree& tree, SparseCholesky<kDim<Pose>>* factor
     const double weight = RotationWeight(constraint);
     const Matrix<Pose> product = weight * constraint.T_from_to.rotation();
     const Matrix<Pose> square = weight * Matrix<Pose>::Identity();
-    const int from = variable_of[Index(constraint.from)];
-    const int to = variable_of[Index(constraint.to)];
+    const int from = variable_of[ToIndex(constraint.from)];
+    const int to = variable_of[ToIndex(constraint.to)];
     system.AddSquare(from, square);
     system.AddSquare(to, square);
     system.AddProduct(from, to, -product);
     if (from < 0) {
-      const Matrix<Pose> known = graph->poses[Index(constraint.from)].rotation();
+      const Matrix<Pose> known = graph->poses[ToIndex(constraint.from)].rotation();
       system.AddRight(to, (known * product).transpose());
     }
     if (to < 0) {
-      const Matrix<Pose> known = graph->poses[Index(constraint.to)].rotation();
+      const Matrix<Pose> known = graph->poses[ToIndex(constraint.to)].rotation();
       system.AddRight(from, product * known.transpose());
     }
   }
@@ -258,15 +267,15 @@ bool SolveRotations(const SpanningTree& tree, SparseCholesky<kDim<Pose>>* factor
   return true;
 }
 
-/// Minimises F over the positions of the nodes that are not held and of the landmarks: one step of
-/// Gauss-Newton, since errors are linear in them.
+/// Minimises F, weighted, over the positions of the nodes that are not held and of the landmarks:
+/// one step of Gauss-Newton, since errors are linear in them.
 template <typename Pose>
 bool SolvePositions(SparseCholesky<kDim<Pose>>* factor, PoseGraph<Pose>* graph) {
   constexpr int kSize = kDim<Pose>;
   const Components components = ConnectedComponents(*graph);
   int count = 0;
   std::vector<int> variable_of(graph->poses.size(), 0);
-  for (int node : HeldNodes(*graph, components)) variable_of[Index(node)] = -1;
+  for (int node : HeldNodes(*graph, components)) variable_of[ToIndex(node)] = -1;
   for (int& variable : variable_of) variable = variable < 0 ? -1 : count++;
   std::vector<int> variable_of_landmark(graph->landmarks.size(), -1);
   for (std::size_t i = 0; i < variable_of_landmark.size(); ++i) {
@@ -286,20 +295,21 @@ bool SolvePositions(SparseCholesky<kDim<Pose>>* factor, PoseGraph<Pose>* graph) 
     system.AddRight(b, -gradient);
   };
   for (const Constraint<Pose>& c : graph->constraints) {
-    const Pose& from = graph->poses[Index(c.from)];
+    const Pose& from = graph->poses[ToIndex(c.from)];
     const typename Pose::Tangent error =
-        ConstraintError(from, graph->poses[Index(c.to)], c.T_from_to);
-    add(variable_of[Index(c.from)], variable_of[Index(c.to)],
+        ConstraintError(from, graph->poses[ToIndex(c.to)], c.T_from_to);
+    add(variable_of[ToIndex(c.from)], variable_of[ToIndex(c.to)],
         (from.rotation() * c.T_from_to.rotation()).transpose(),
-        c.information.template topLeftCorner<kSize, kSize>(),
-        c.information.template topRows<kSize>() * error);
+        WeightOf(c) * c.information.template topLeftCorner<kSize, kSize>(),
+        WeightOf(c) * c.information.template topRows<kSize>() * error);
   }
   for (const LandmarkObservation<Pose>& observation : graph->observations) {
-    const Pose& node = graph->poses[Index(observation.node)];
+    const Pose& node = graph->poses[ToIndex(observation.node)];
     const typename Pose::Point error =
-        ObservationError(node, graph->landmarks[Index(observation.landmark)], observation.p_node);
-    add(variable_of[Index(observation.node)], variable_of_landmark[Index(observation.landmark)],
-        node.rotation().transpose(), observation.information, observation.information * error);
+        ObservationError(node, graph->landmarks[ToIndex(observation.landmark)], observation.p_node);
+    add(variable_of[ToIndex(observation.node)], variable_of_landmark[ToIndex(observation.landmark)],
+        node.rotation().transpose(), WeightOf(observation) * observation.information,
+        WeightOf(observation) * observation.information * error);
   }
   const std::optional<Eigen::MatrixXd> moves = system.Solve(factor);
   if (!moves) return false;
@@ -324,12 +334,13 @@ void SetSpanningTreeGuess(PoseGraph<Pose>* graph) {
   Validate(*graph);
   const SpanningTree tree = TreeBuilder<Pose>(*graph).Build();
   for (int node : tree.order) {
-    const int k = tree.link[Index(node)];
+    const int k = tree.link[ToIndex(node)];
     if (k < 0) continue;
-    const Constraint<Pose>& constraint = graph->constraints[Index(k)];
-    graph->poses[Index(node)] =
-        constraint.to == node ? graph->poses[Index(constraint.from)] * constraint.T_from_to
-                              : graph->poses[Index(constraint.to)] * constraint.T_from_to.Inverse();
+    const Constraint<Pose>& constraint = graph->constraints[ToIndex(k)];
+    graph->poses[ToIndex(node)] =
+        constraint.to == node
+            ? graph->poses[ToIndex(constraint.from)] * constraint.T_from_to
+            : graph->poses[ToIndex(constraint.to)] * constraint.T_from_to.Inverse();
   }
   PlaceLandmarks(graph);
 }

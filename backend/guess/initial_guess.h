@@ -15,9 +15,10 @@ void SetSpanningTreeGuess(PoseGraph<Pose>* graph);
 /// The minimum of F with its two difficulties taken out one after the other: first the rotations as
 /// if they were any matrices, which is linear, then moved to the nearest rotations; then, given
 /// them, positions and landmarks, which is linear too (Carlone, Tron, Daniilidis and Dellaert, ICRA
-/// 2015: chordal relaxation). Does not depend on the poses, but for those of held nodes and of
-/// parts that only landmarks join to them. False, and the graph as it was, if either system is not
-/// positive definite: constraints without information on some rotation or position.
+/// 2015: chordal relaxation). What is marked robust counts a millionth of its information, so that
+/// gross outliers hardly move the guess. Does not depend on the poses, but for those of held nodes
+/// and of parts that only landmarks join to them. False, and the graph as it was, if either system
+/// is not positive definite: constraints without information on some rotation or position.
 template <typename Pose>
 [[nodiscard]] bool SetChordalGuess(PoseGraph<Pose>* graph);
 

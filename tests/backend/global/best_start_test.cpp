@@ -79,6 +79,34 @@ TYPED_TEST(BestStartTest, TheLowestEndIsKeptWhereNoneIsCertain) {
   }
 }
 
+TYPED_TEST(BestStartTest, NoStartIsTriedTwice) {
+  // All closures are wrong, so that no end is as low as expected. The poses are those of the chain,
+  // up to six digits, and so are those of a spanning tree and of a chordal guess, which hardly
+  // counts closures.
+  std::mt19937 random(6);
+  auto graph = test_support::RandomKnownGraph<TypeParam>(20, 12, 0, 0.0, &random);
+  for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
+    Constraint<TypeParam>& constraint = graph.constraints[k];
+    constraint.robust = k >= 19;
+    if (constraint.robust) {
+      constraint.T_from_to = test_support::RandomPose<TypeParam>(&random, 5.0);
+    } else {
+      constraint.information *= 1e3;
+    }
+  }
+  for (std::size_t node = 1; node < graph.poses.size(); ++node) {
+    const auto digits = test_support::RandomVector<typename TypeParam::Tangent>(&random, 1e-6);
+    graph.poses[node] = graph.poses[node].Boxplus(digits);
+  }
+  OptimizerOptions options;
+  options.loss = {LossKind::kGemanMcClure, 30.0};
+  Optimizer<TypeParam> optimizer(options);
+  const BestStartResult result = OptimizeFromBestStart(&graph, &optimizer);
+  ASSERT_EQ(result.trials.size(), 1u);
+  const auto expected = static_cast<double>(DegreesOfFreedom(graph, ConnectedComponents(graph)));
+  EXPECT_GT(result.trials[0].result.final_error, expected) << "else one start would do anyway";
+}
+
 TYPED_TEST(BestStartTest, RobustLossesHaveNoCertificate) {
   std::mt19937 random(3);
   auto graph = test_support::RandomKnownGraph<TypeParam>(20, 10, 0, 0.01, &random);

@@ -206,6 +206,39 @@ TYPED_TEST(InitialGuessTest, ChordalRotationsAreThoseNearestToTheDenseRelaxation
   }
 }
 
+TYPED_TEST(InitialGuessTest, GrossOutliersHardlyMoveAChordalGuess) {
+  using Pose = TypeParam;
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto truth = test_support::RandomKnownGraph<Pose>(40, 30, 6, 0.0, &random);
+    auto graph = truth;
+    for (std::size_t k = 39; k < graph.constraints.size(); ++k) {  // behind the chain
+      graph.constraints[k].robust = true;
+      if (k % 3 == 0) graph.constraints[k].T_from_to = test_support::RandomPose<Pose>(&random, 5.0);
+    }
+    for (std::size_t k = 0; k < graph.observations.size(); ++k) {
+      graph.observations[k].robust = k % 4 == 3;
+      if (graph.observations[k].robust) graph.observations[k].p_node.array() += 9.0;
+    }
+    test_support::Scramble(&graph, &random);
+    ASSERT_TRUE(SetChordalGuess(&graph));
+    this->ExpectSame(graph, truth, 0.2);
+  }
+}
+
+TYPED_TEST(InitialGuessTest, WhatOnlyRobustConstraintsJoinIsPlacedByThem) {
+  using Pose = TypeParam;
+  std::mt19937 random(8);
+  const auto truth = test_support::RandomKnownGraph<Pose>(20, 10, 4, 0.0, &random);
+  auto graph = truth;
+  for (std::size_t k = 9; k < graph.constraints.size(); ++k) graph.constraints[k].robust = true;
+  for (auto& observation : graph.observations) observation.robust = true;
+  test_support::Scramble(&graph, &random);
+  ASSERT_TRUE(SetChordalGuess(&graph));
+  this->ExpectSame(graph, truth, 1e-6);
+}
+
 TYPED_TEST(InitialGuessTest, ChordalPositionsMinimizeFGivenTheRotations) {
   using Pose = TypeParam;
   using Point = typename Pose::Point;
