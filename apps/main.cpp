@@ -7,16 +7,16 @@
 #include <exception>
 #include <new>
 #include <string>
-#include <variant>
 
+#include "apps/cli/command.h"
 #include "apps/cli/command_line.h"
-#include "apps/eval/eval_command.h"
-#include "apps/online/online_command.h"
-#include "apps/optimize/optimize_command.h"
+#include "apps/eval/eval_arguments.h"
+#include "apps/online/online_arguments.h"
+#include "apps/optimize/optimize_arguments.h"
 #include "apps/output/standard_output.h"
-#include "apps/plot/plot_command.h"
-#include "apps/replay/replay_command.h"
-#include "apps/run/run_command.h"
+#include "apps/plot/plot_arguments.h"
+#include "apps/replay/replay_arguments.h"
+#include "apps/run/run_arguments.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -34,8 +34,8 @@ int ExitStatus(ErrorCode code) {
   return 1;
 }
 
-/// Opens the standard streams that the caller has closed, so that no file of ours gets their
-/// numbers and what is printed into it. Writing to them still fails, as it should.
+/// Opens the standard streams that the caller has closed. Otherwise the next file that is opened
+/// would get the number of such a stream, and with it what is printed. Writing to them still fails.
 void OccupyStandardStreams() {
   int descriptor = 0;
   do {
@@ -44,15 +44,45 @@ void OccupyStandardStreams() {
   if (descriptor >= 0) close(descriptor);
 }
 
-void Execute(const RunOptions& options) { RunCommand(options); }
-void Execute(const OnlineOptions& options) { OnlineCommand(options); }
-void Execute(const EvalOptions& options) { EvalCommand(options); }
-void Execute(const OptimizeOptions& options) { OptimizeCommand(options); }
-void Execute(const PlotOptions& options) { PlotCommand(options); }
-void Execute(const ReplayOptions& options) { ReplayCommand(options); }
-void Execute(const Answer& answer) { PrintToStandardOutput(answer.text); }
+/// What the commands are asked to do.
+struct Options {
+  RunOptions run;
+  OnlineOptions online;
+  EvalOptions eval;
+  OptimizeOptions optimize;
+  PlotOptions plot;
+  ReplayOptions replay;
+};
 
-/// One line, whatever the message has in it; nobody is left to tell if this fails.
+Program DescribeProgram(Options* options) {
+  return {.name = "loopgrid",
+          .version = LOOPGRID_VERSION,
+          .summary =
+              "Graph-based 2D laser SLAM: a robot's log in; map, trajectory and graph out. Its "
+              "back-end\n"
+              "alone: a pose graph in, 2D or 3D; the best poses and their covariances out.",
+          .footer =
+              "loopgrid COMMAND --help explains a command's options.\n"
+              "Exit status: 0 done, 2 wrong usage, 3 an input cannot be used, 4 an output cannot "
+              "be written,\n"
+              "128 + n ended by signal n.",
+          .commands = {DescribeRun(&options->run), DescribeOnline(&options->online),
+                       DescribeEval(&options->eval), DescribeOptimize(&options->optimize),
+                       DescribePlot(&options->plot), DescribeReplay(&options->replay)}};
+}
+
+void RunProgram(int argc, char** argv) {
+  Options options;
+  const Program program = DescribeProgram(&options);
+  const Invocation invocation = ParseCommandLine(program, argc, argv);
+  if (invocation.command == nullptr) {
+    PrintToStandardOutput(invocation.answer);
+  } else {
+    Execute(*invocation.command);
+  }
+}
+
+/// Prints the message as one line. An error of printing is ignored: there is no place to report it.
 int Complain(std::string message, int status) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   std::fprintf(stderr, "loopgrid: %s\n", message.c_str());
@@ -61,11 +91,12 @@ int Complain(std::string message, int status) {
 
 int Main(int argc, char** argv) {
   OccupyStandardStreams();
-  // A closed pipe or a limit on file sizes is then an error of write(), which says what and where.
+  // With these ignored, a closed pipe or a limit on file sizes makes write() fail; the error then
+  // names the file.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
-    std::visit([](const auto& command) { Execute(command); }, ParseCommandLine(argc, argv));
+    RunProgram(argc, argv);
     return 0;
   } catch (const Error& error) {
     return Complain(error.what(), ExitStatus(error.code()));

@@ -61,7 +61,7 @@ const std::vector<Room>& Rooms() {
 
       {"apps/cli", {"backend/base"}},
       {"apps/output", {"apps/cli", "frontend/", "mapping", "backend/"}},
-      {"apps/settings", {"apps/cli", "frontend/", "mapping", "backend/"}},
+      {"apps/settings", {"apps/output", "apps/cli", "frontend/", "mapping", "backend/"}},
       {"apps/net", {"backend/base"}},
       {"apps/modules",
        {"frontend/log/rawlog", "frontend/log/observation", "mapping", "backend/base"}},
@@ -106,7 +106,7 @@ const std::vector<Confinement>& Confinements() {
       {"cholmod.h", {"tests/"}, false},
       {"boost/", {"apps/", "tests/"}, false},
       {"CLI/", {"apps/cli/command_line.cpp"}, false},
-      {"nlohmann/", {"apps/output/", "tests/"}, true},
+      {"nlohmann/", {"apps/output/json_", "tests/"}, true},
       {"ceres/", {"tests/"}, true},
       {"gtest/", {"tests/"}, true},
       {"gmock/", {"tests/"}, true},

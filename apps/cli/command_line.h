@@ -1,26 +1,19 @@
 #pragma once
 
 #include <string>
-#include <variant>
 
-#include "apps/eval/eval_command.h"
-#include "apps/online/online_options.h"
-#include "apps/optimize/optimize_options.h"
-#include "apps/plot/plot_command.h"
-#include "apps/replay/replay_options.h"
-#include "apps/settings/run_options.h"
+#include "apps/cli/command.h"
 
 namespace loopgrid {
 
-/// Text to print and be done with: the answer to --help and --version.
-struct Answer {
-  std::string text;
+/// What a command line asks for.
+struct Invocation {
+  const Command* command = nullptr;  ///< its targets are set; null: print `answer` and be done
+  std::string answer = {};           ///< to --help or --version
 };
 
-using Command = std::variant<RunOptions, OnlineOptions, ReplayOptions, EvalOptions, OptimizeOptions,
-                             PlotOptions, Answer>;
-
-/// What the arguments ask for. Throws Error (kUsage) if they make no sense.
-Command ParseCommandLine(int argc, const char* const* argv);
+/// Sets the targets of the command that the command line names. Throws Error (kUsage) if the line
+/// makes no sense; the message names the nearest right command or option where one was mistyped.
+Invocation ParseCommandLine(const Program& program, int argc, const char* const* argv);
 
 }  // namespace loopgrid

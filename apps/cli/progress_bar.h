@@ -7,8 +7,8 @@
 namespace loopgrid {
 
 /// One line of progress: bar, per cent, scans and, after the first half second, rate and time left;
-/// at most `width` characters. `fraction` is the share of the log that is read, 0..1; 0 if nobody
-/// knows, then without the bar.
+/// at most `width` characters. `fraction` is the share of the log that has been read, 0..1; it is 0
+/// if that is not known, and the bar is then left out.
 std::string FormatProgress(double fraction, std::int64_t scans, double seconds, int width);
 
 /// A progress bar on standard error, for people: silent if that is not a terminal.

@@ -2,44 +2,49 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "apps/output/json_writer.h"
 #include "apps/output/standard_output.h"
 #include "backend/base/error.h"
-#include "backend/base/line_reader.h"
-#include "frontend/evaluation/number_lines.h"
+#include "frontend/evaluation/reference_file.h"
 #include "frontend/evaluation/relation_error.h"
-#include "frontend/evaluation/relations_file.h"
 #include "frontend/evaluation/trajectory_error.h"
 #include "frontend/evaluation/tum_file.h"
 
 namespace loopgrid {
 namespace {
 
-using Json = nlohmann::ordered_json;
+bool IsForced(const EvalOptions& options) { return options.relations || options.trajectory; }
 
-/// Both formats have eight numbers a line; only of a trajectory are the last four always a unit
-/// quaternion.
-bool IsTrajectoryFile(const std::string& path) {
-  constexpr int kLinesToTry = 20;
-  constexpr double kTolerance = 0.01;
-  LineReader lines(path);
-  std::array<double, 8> fields{};
-  for (int i = 0; i < kLinesToTry && NextNumberLine(&lines, fields); ++i) {
-    const auto& [time, x, y, z, qx, qy, qz, qw] = fields;
-    const double norm = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
-    if (std::abs(norm - 1.0) > kTolerance) return false;
-  }
-  return true;
+/// Says which file is compared with which, and what the second one was taken for.
+std::string ComparisonLine(const EvalOptions& options, std::size_t poses, const char* kind,
+                           std::size_t count, const char* unit) {
+  return fmt::format("{:<13} {} ({} poses) with the {} {} ({} {}; {})\n", "compare",
+                     options.estimate, poses, kind, options.reference, count, unit,
+                     IsForced(options) ? "as told" : "known by content");
 }
 
-Json SummaryJson(const ErrorSummary& summary) {
-  return {{"mean", summary.mean},     {"std", summary.standard_deviation},
-          {"rms", summary.rms},       {"squared_mean", summary.squared_mean},
-          {"median", summary.median}, {"max", summary.maximum}};
+void AddComparison(const EvalOptions& options, const char* metric, JsonWriter* json) {
+  json->Field("metric", metric)
+      .Field("known_by", IsForced(options) ? "option" : "content")
+      .Field("estimate", options.estimate)
+      .Field("reference", options.reference);
+}
+
+void AddSummary(const char* key, const ErrorSummary& summary, JsonWriter* json) {
+  json->Key(key).BeginObject();
+  json->Field("mean", summary.mean)
+      .Field("std", summary.standard_deviation)
+      .Field("rms", summary.rms)
+      .Field("squared_mean", summary.squared_mean)
+      .Field("median", summary.median)
+      .Field("max", summary.maximum);
+  json->EndObject();
 }
 
 std::string SummaryLine(const char* name, const ErrorSummary& summary, const char* unit) {
@@ -50,10 +55,11 @@ std::string SummaryLine(const char* name, const ErrorSummary& summary, const cha
       summary.median, summary.maximum, fmt::arg("unit", unit));
 }
 
-Json RelationsJson(const RelationErrorSummaries& errors) {
-  return {{"count", errors.translation.count},
-          {"translation_m", SummaryJson(errors.translation)},
-          {"rotation_deg", SummaryJson(errors.rotation)}};
+void AddRelations(const char* key, const RelationErrorSummaries& errors, JsonWriter* json) {
+  json->Key(key).BeginObject().Field("count", errors.translation.count);
+  AddSummary("translation_m", errors.translation, json);
+  AddSummary("rotation_deg", errors.rotation, json);
+  json->EndObject();
 }
 
 std::string RelationsText(const char* kind, const RelationErrorSummaries& errors) {
@@ -63,54 +69,77 @@ std::string RelationsText(const char* kind, const RelationErrorSummaries& errors
          SummaryLine("rotation", errors.rotation, "deg");
 }
 
-std::string CompareWithRelations(const EvalOptions& options, const Trajectory& estimate) {
-  const RelationEvaluation result =
-      EvaluateRelations(estimate, ReadRelationsFile(options.reference));
+std::string Compare(const EvalOptions& options, const Trajectory& estimate,
+                    const std::vector<Relation>& relations) {
+  const RelationEvaluation result = EvaluateRelations(estimate, relations);
   if (result.errors.empty()) {
     throw Error(ErrorCode::kInput,
                 options.reference + ": no relation lies within the times of " + options.estimate);
   }
   if (options.json) {
-    const Json json = {{"metric", "relations"},
-                       {"exact", RelationsJson(result.exact)},
-                       {"interpolated", RelationsJson(result.interpolated)},
-                       {"outside", result.outside}};
-    return json.dump(2) + '\n';
+    JsonWriter json(JsonWriter::Layout::kIndented);
+    json.BeginObject();
+    AddComparison(options, "relations", &json);
+    AddRelations("exact", result.exact, &json);
+    AddRelations("interpolated", result.interpolated, &json);
+    json.Field("outside", result.outside).EndObject();
+    return json.Take() + '\n';
   }
-  return RelationsText("exact", result.exact) + RelationsText("interpolated", result.interpolated) +
+  return ComparisonLine(options, estimate.size(), "relations", relations.size(), "relations") +
+         RelationsText("exact", result.exact) + RelationsText("interpolated", result.interpolated) +
          fmt::format("{:<13} {} relations\n", "outside", result.outside);
 }
 
-std::string CompareWithTrajectory(const EvalOptions& options, const Trajectory& estimate) {
-  const TrajectoryEvaluation result = EvaluateTrajectory(estimate, ReadTumFile(options.reference));
+std::string FormatJson(const EvalOptions& options, const TrajectoryEvaluation& result) {
+  JsonWriter json(JsonWriter::Layout::kIndented);
+  json.BeginObject();
+  AddComparison(options, "trajectory", &json);
+  json.Field("count", result.translation.count);
+  AddSummary("translation_m", result.translation, &json);
+  AddSummary("rotation_deg", result.rotation, &json);
+  json.Field("unmatched", result.unmatched);
+  const SE2& alignment = result.T_reference_estimate;
+  json.Key("alignment").BeginObject();
+  json.Field("x", alignment.x()).Field("y", alignment.y()).Field("theta", alignment.theta());
+  json.EndObject().EndObject();
+  return json.Take() + '\n';
+}
+
+std::string Compare(const EvalOptions& options, const Trajectory& estimate,
+                    const Trajectory& reference) {
+  const TrajectoryEvaluation result = EvaluateTrajectory(estimate, reference);
   if (result.translation.count == 0) {
     throw Error(ErrorCode::kInput,
                 options.reference + ": no pose has the time of one of " + options.estimate);
   }
-  if (options.json) {
-    const SE2& alignment = result.T_reference_estimate;
-    const Json json = {
-        {"metric", "trajectory"},
-        {"count", result.translation.count},
-        {"translation_m", SummaryJson(result.translation)},
-        {"rotation_deg", SummaryJson(result.rotation)},
-        {"unmatched", result.unmatched},
-        {"alignment", {{"x", alignment.x()}, {"y", alignment.y()}, {"theta", alignment.theta()}}}};
-    return json.dump(2) + '\n';
-  }
-  return fmt::format("{:<13} {} poses\n", "compared", result.translation.count) +
+  if (options.json) return FormatJson(options, result);
+  return ComparisonLine(options, estimate.size(), "trajectory", reference.size(), "poses") +
+         fmt::format("{:<13} {} poses\n", "compared", result.translation.count) +
          SummaryLine("translation", result.translation, "m") +
          SummaryLine("rotation", result.rotation, "deg") +
          fmt::format("{:<13} {} poses of the reference\n", "unmatched", result.unmatched);
 }
 
+std::optional<ReferenceKind> KindOf(const EvalOptions& options) {
+  if (options.relations) return ReferenceKind::kRelations;
+  if (options.trajectory) return ReferenceKind::kTrajectory;
+  return std::nullopt;
+}
+
 }  // namespace
 
+void EvalOptions::Validate() const {
+  if (relations && trajectory) {
+    throw Error(ErrorCode::kUsage, "--relations and --reference: REFERENCE is one of them");
+  }
+}
+
 void EvalCommand(const EvalOptions& options) {
+  options.Validate();
   const Trajectory estimate = ReadTumFile(options.estimate);
-  PrintToStandardOutput(IsTrajectoryFile(options.reference)
-                            ? CompareWithTrajectory(options, estimate)
-                            : CompareWithRelations(options, estimate));
+  const Reference reference = ReadReference(options.reference, KindOf(options));
+  PrintToStandardOutput(std::visit(
+      [&](const auto& content) { return Compare(options, estimate, content); }, reference));
 }
 
 }  // namespace loopgrid

@@ -1,22 +1,19 @@
 #include "apps/online/event_writer.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 
+#include "apps/output/closure_fields.h"
+#include "apps/output/json_writer.h"
+#include "apps/settings/mapping_options.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 [[noreturn]] void Fail(const std::string& path, const char* doing) {
   const int reason = errno;
@@ -29,66 +26,54 @@ Descriptor OpenOutput(const std::string& path) {
   return Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
 }
 
-/// JSON has no other numbers.
-struct Number {
-  double value;
-};
-
-std::string Line(const Json& event) {
-  // File names need not be UTF-8; JSON does.
-  return event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+/// Begins an event: a JSON object on a line of its own.
+JsonWriter Event(const char* name) {
+  JsonWriter json(JsonWriter::Layout::kOneLine);
+  json.BeginObject().Field("event", name);
+  return json;
 }
 
-}  // namespace
-}  // namespace loopgrid
-
-template <>
-struct fmt::formatter<loopgrid::Number> : fmt::formatter<double> {
-  template <typename Context>
-  auto format(loopgrid::Number number, Context& context) const {
-    if (!std::isfinite(number.value)) return fmt::format_to(context.out(), "null");
-    return fmt::formatter<double>::format(number.value, context);
-  }
-};
-
-namespace loopgrid {
-namespace {
-
-void AddPose(const SE2& pose, std::string* text) {
-  fmt::format_to(std::back_inserter(*text), R"("x":{:.6f},"y":{:.6f},"theta":{:.6f})",
-                 Number{pose.x()}, Number{pose.y()}, Number{pose.theta()});
+void Append(JsonWriter* event, std::string* text) {
+  event->EndObject();
+  *text += event->Take() + '\n';
 }
 
-void AddScan(const OnlineUpdate& update, std::string* text) {
+void AddPose(const SE2& pose, JsonWriter* json) {
+  json->Field("x", FixedNumber{pose.x(), 6})
+      .Field("y", FixedNumber{pose.y(), 6})
+      .Field("theta", FixedNumber{pose.theta(), 6});
+}
+
+void AppendScan(const OnlineUpdate& update, std::string* text) {
   const TrackedScan& scan = update.tracked;
-  fmt::format_to(std::back_inserter(*text),
-                 R"({{"event":"pose","scan":{},"line":{},"time":{:.6f},)", scan.scan, update.line,
-                 Number{update.timestamp});
-  AddPose(scan.T_map_robot, text);
+  JsonWriter json = Event("pose");
+  json.Field("scan", scan.scan)
+      .Field("line", update.line)
+      .Field("time", FixedNumber{update.timestamp, 6});
+  AddPose(scan.T_map_robot, &json);
   const Eigen::Matrix3d& cov = scan.covariance;
-  fmt::format_to(std::back_inserter(*text),
-                 R"(,"covariance":[{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}],"matched":{},)"
-                 R"("localized":{},"latency_ms":{:.3f}}})"
-                 "\n",
-                 Number{cov(0, 0)}, Number{cov(0, 1)}, Number{cov(0, 2)}, Number{cov(1, 1)},
-                 Number{cov(1, 2)}, Number{cov(2, 2)}, scan.matched, scan.localized,
-                 Number{1e3 * update.latency_seconds});
+  json.Key("covariance").BeginArray();
+  for (const double entry : {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)}) {
+    json.Value(RoundedNumber{entry, 4});
+  }
+  json.EndArray();
+  json.Field("matched", scan.matched)
+      .Field("localized", scan.localized)
+      .Field("latency_ms", FixedNumber{1e3 * update.latency_seconds, 3});
+  Append(&json, text);
 }
 
-void AddNode(const OnlineUpdate& update, std::string* text) {
-  fmt::format_to(std::back_inserter(*text), R"({{"event":"node","node":{},"scan":{},)",
-                 update.tracked.node, update.tracked.scan);
-  AddPose(update.tracked.T_map_robot, text);
-  *text += "}\n";
+void AppendNode(const OnlineUpdate& update, std::string* text) {
+  JsonWriter json = Event("node");
+  json.Field("node", update.tracked.node).Field("scan", update.tracked.scan);
+  AddPose(update.tracked.T_map_robot, &json);
+  Append(&json, text);
 }
 
-void AddClosure(const Closure& closure, std::string* text) {
-  fmt::format_to(std::back_inserter(*text),
-                 R"({{"event":"closure","from":{},"to":{},"outcome":"{}","score":{:.4f},)"
-                 R"("chi2":{:.4g},"reason":"{}"}})"
-                 "\n",
-                 closure.from, closure.to, ToString(closure.outcome), Number{closure.score},
-                 Number{closure.chi2}, Explain(closure.outcome));
+void AppendClosure(const Closure& closure, std::string* text) {
+  JsonWriter json = Event("closure");
+  AddClosureEventFields(closure, &json);
+  Append(&json, text);
 }
 
 }  // namespace
@@ -101,50 +86,61 @@ EventWriter::EventWriter(const std::string& path)
 void EventWriter::Start(const OnlineOptions& options, const std::string& source,
                         const std::string& page) {
   if (!enabled()) return;
-  buffer_ += Line({{"event", "start"},
-                   {"version", LOOPGRID_VERSION},
-                   {"source", source},
-                   {"page", page},
-                   {"folder", options.run.out},
-                   {"options",
-                    {{"resolution", options.run.resolution},
-                     {"node_distance", options.run.slam.node_distance},
-                     {"node_angle", options.run.slam.node_angle},
-                     {"strict", options.run.strict}}}});
+  JsonWriter json = Event("start");
+  json.Field("version", LOOPGRID_VERSION)
+      .Field("source", source)
+      .Field("page", page)
+      .Field("folder", options.run.out);
+  json.Key("options").BeginObject();
+  AddMappingFields(options.run, &json);
+  json.EndObject();
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Resumed(std::int64_t lines, std::int64_t scans) {
-  if (enabled()) buffer_ += Line({{"event", "resumed"}, {"lines", lines}, {"scans", scans}});
+  if (!enabled()) return;
+  JsonWriter json = Event("resumed");
+  json.Field("lines", lines).Field("scans", scans);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Known(std::int64_t lines) {
-  if (enabled()) buffer_ += Line({{"event", "known"}, {"lines", lines}});
+  if (!enabled()) return;
+  JsonWriter json = Event("known");
+  json.Field("lines", lines);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Scan(const OnlineUpdate& update) {
   if (!enabled()) return;
-  AddScan(update, &buffer_);
-  if (update.tracked.node >= 0) AddNode(update, &buffer_);
-  for (const Closure& closure : update.closures) AddClosure(closure, &buffer_);
-  if (update.tracked.optimized) {
-    fmt::format_to(std::back_inserter(buffer_),
-                   R"({{"event":"optimization","scan":{}}})"
-                   "\n",
-                   update.tracked.scan);
-  }
+  AppendScan(update, &buffer_);
+  if (update.tracked.node >= 0) AppendNode(update, &buffer_);
+  for (const Closure& closure : update.closures) AppendClosure(closure, &buffer_);
+  if (!update.tracked.optimized) return;
+  JsonWriter json = Event("optimization");
+  json.Field("scan", update.tracked.scan);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Warning(const std::string& text) {
-  if (enabled()) buffer_ += Line({{"event", "warning"}, {"text", text}});
+  if (!enabled()) return;
+  JsonWriter json = Event("warning");
+  json.Field("text", text);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Saved(std::int64_t scans) {
-  if (enabled()) buffer_ += Line({{"event", "saved"}, {"scans", scans}});
+  if (!enabled()) return;
+  JsonWriter json = Event("saved");
+  json.Field("scans", scans);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::End(std::int64_t lines, std::int64_t scans, bool stopped) {
   if (!enabled()) return;
-  buffer_ += Line({{"event", "end"}, {"lines", lines}, {"scans", scans}, {"stopped", stopped}});
+  JsonWriter json = Event("end");
+  json.Field("lines", lines).Field("scans", scans).Field("stopped", stopped);
+  Append(&json, &buffer_);
 }
 
 void EventWriter::Flush() {

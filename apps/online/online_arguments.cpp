@@ -1,14 +1,19 @@
-#include <CLI/CLI.hpp>
+#include "apps/online/online_arguments.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "apps/cli/arguments.h"
+#include "apps/online/online_command.h"
+#include "apps/settings/mapping_options.h"
 
 namespace loopgrid {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kOnlineFooter =
     "Lines of a CARMEN log come in; without --follow, --listen or --connect from standard input.\n"
     "When they end, or at SIGINT, SIGTERM or SIGHUP, all files of `run` are written to DIR, the\n"
     "same bytes as `run` makes of the same lines. A second signal ends at once.\n"
@@ -26,71 +31,76 @@ constexpr const char* kFooter =
     "and\n"
     "then the sender wait for it.";
 
-void AddSources(CLI::App* online, OnlineOptions* options) {
-  const auto add = [online](const char* name, std::string* value, const char* description,
-                            const char* type) {
-    RequireName(online->add_option(name, *value, description))->type_name(type);
-  };
-  add("--follow", &options->follow, "Read a file that is being written, also across rotation",
-      "FILE");
-  add("--listen", &options->listen, "Wait for a sender; a sender may come after another",
-      "HOST:PORT");
-  add("--connect", &options->connect, "Fetch from a sender, again and again", "HOST:PORT");
-  online->add_flag("--once", options->once,
-                   "End when the first sender that sent something has left "
-                   "[default: wait for the next]");
+std::vector<Argument> SourceArguments(OnlineOptions* options) {
+  return {{.name = "--follow",
+           .unit = "FILE",
+           .help = "Read a file that is being written, also across rotation",
+           .target = &options->follow},
+          {.name = "--listen",
+           .unit = "HOST:PORT",
+           .help = "Wait for a sender; a sender may come after another",
+           .target = &options->listen},
+          {.name = "--connect",
+           .unit = "HOST:PORT",
+           .help = "Fetch from a sender, again and again",
+           .target = &options->connect},
+          {.name = "--once",
+           .help = "End when the first sender that sent something has left [default: wait for the "
+                   "next]",
+           .target = &options->once}};
 }
 
-void AddSession(CLI::App* online, OnlineOptions* options) {
-  const auto add = [online](const char* name, std::string* value, const char* description) {
-    RequireName(online->add_option(name, *value, description))->type_name("DIR");
-  };
-  add("--out", &options->run.out, "Folder for a new session; made if it is not there");
-  add("--resume", &options->resume, "Go on with the session in this folder");
-  add("--continue", &options->continued,
-      "Start in the map of this folder, of a session or a run; the robot finds itself in it");
+std::vector<Argument> SessionArguments(OnlineOptions* options) {
+  return {{.name = "--out",
+           .unit = "DIR",
+           .help = "Folder for a new session; made if it is not there",
+           .target = &options->run.out},
+          {.name = "--resume",
+           .unit = "DIR",
+           .help = "Go on with the session in this folder",
+           .target = &options->resume},
+          {.name = "--continue",
+           .unit = "DIR",
+           .help = "Start in the map of this folder, of a session or a run; the robot finds itself "
+                   "in it",
+           .target = &options->continued}};
 }
 
-/// Notes which of the options that decide the result are given.
-void NoteGiven(CLI::App* online, OnlineOptions* options) {
-  static const std::vector<std::pair<std::string, std::string>> deciding = {
-      {"--resolution", "resolution"},
-      {"--node-distance", "node_distance"},
-      {"--node-angle", "node_angle"},
-      {"--strict", "strict"}};
-  online->callback([online, options] {
-    for (const auto& [option, field] : deciding) {
-      if (online->count(option) > 0) options->given.insert(field);
-    }
-  });
+std::vector<Argument> LiveArguments(OnlineOptions* options) {
+  return {{.name = "--view",
+           .unit = "[HOST:]PORT",
+           .help = "Serve a page that shows the map [default: none; to this machine only]",
+           .target = &options->view},
+          {.name = "--events",
+           .unit = "FILE",
+           .help = "Write what happens as JSON lines; -: standard output",
+           .target = &options->events},
+          {.name = "--interval",
+           .unit = "SECONDS",
+           .help = fmt::format("Between two refreshes of the files, {} to {:.0f} seconds",
+                               OnlineOptions::kShortestInterval, OnlineOptions::kLongestInterval),
+           .target = &options->interval,
+           .shows_default = true},
+          {.name = "--threads",
+           .unit = "N",
+           .help = "1: loops are closed by the thread that tracks; the result is the same",
+           .target = &options->threads,
+           .shows_default = true}};
 }
 
 }  // namespace
 
-void AddOnline(CLI::App* program, OnlineOptions* options) {
-  CLI::App* online = program->add_subcommand("online", "Make a map while the robot drives");
-  AddSources(online, options);
-  AddSession(online, options);
-  RequireName(online->add_option("--view", options->view,
-                                 "Serve a page that shows the map [default: none; to this "
-                                 "machine only]"))
-      ->type_name("[HOST:]PORT");
-  RequireName(online->add_option("--events", options->events,
-                                 "Write what happens as JSON lines; -: standard output"))
-      ->type_name("FILE");
-  online
-      ->add_option("--interval", options->interval,
-                   "Between two refreshes of the files, 0.01 to 86400 seconds")
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  online
-      ->add_option("--threads", options->threads,
-                   "1: loops are closed by the thread that tracks; the result is the same")
-      ->capture_default_str()
-      ->type_name("N");
-  AddMapping(online, &options->run);
-  NoteGiven(online, options);
-  online->footer(kFooter);
+Command DescribeOnline(OnlineOptions* options) {
+  Command command{.name = "online",
+                  .summary = "Make a map while the robot drives",
+                  .footer = kOnlineFooter,
+                  .action = [options] { OnlineCommand(*options); }};
+  for (std::vector<Argument> group :
+       {SourceArguments(options), SessionArguments(options), LiveArguments(options),
+        MappingArguments(&options->run, &options->given)}) {
+    std::move(group.begin(), group.end(), std::back_inserter(command.arguments));
+  }
+  return command;
 }
 
 }  // namespace loopgrid

@@ -9,6 +9,9 @@ namespace loopgrid {
 
 /// What `loopgrid online` is asked to do.
 struct OnlineOptions {
+  static constexpr double kShortestInterval = 0.01;    ///< seconds
+  static constexpr double kLongestInterval = 86400.0;  ///< seconds
+
   // Where the lines come from: one of these, or standard input.
   std::string follow;   ///< a file that is being written
   std::string listen;   ///< HOST:PORT to wait for senders at
@@ -23,10 +26,10 @@ struct OnlineOptions {
   double interval = 5.0;  ///< seconds between two refreshes of the files
   int threads = 2;        ///< 1: the mapper does everything in one thread
 
-  /// Which options that decide the result were given; the others come from a resumed session.
+  /// The keys of the MappingOptions() that were given; the others come from a resumed session.
   std::set<std::string> given;
 
-  /// Throws Error (kUsage) naming the field, its value and its bound.
+  /// Throws Error (kUsage) naming the option, its value and its bounds.
   void Validate() const;
 };
 

@@ -1,56 +1,65 @@
 #include "apps/online/online_status.h"
 
-#include <nlohmann/json.hpp>
-
+#include "apps/output/json_writer.h"
 #include "apps/output/peak_memory.h"
 
 namespace loopgrid {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json LatencyJson(const LatencyHistogram& latency) {
-  return {{"median", 1e3 * latency.Quantile(0.5)},
-          {"p99", 1e3 * latency.Quantile(0.99)},
-          {"p99_9", 1e3 * latency.Quantile(0.999)},
-          {"max", 1e3 * latency.max()}};
+void AddLatency(const LatencyHistogram& latency, JsonWriter* json) {
+  json->Key("latency_ms").BeginObject();
+  json->Field("median", 1e3 * latency.Quantile(0.5))
+      .Field("p99", 1e3 * latency.Quantile(0.99))
+      .Field("p99_9", 1e3 * latency.Quantile(0.999))
+      .Field("max", 1e3 * latency.max());
+  json->EndObject();
 }
 
-Json SourceJson(const OnlineStatus& status) {
+void AddClosures(const OnlineStatus& status, JsonWriter* json) {
+  json->Key("closures").BeginObject();
+  json->Field("tried", status.closures_tried).Field("accepted", status.closures_accepted);
+  json->EndObject();
+}
+
+void AddQueue(const LineQueue::Counters& queue, JsonWriter* json) {
+  json->Key("queue").BeginObject();
+  json->Field("waiting", queue.waiting_lines)
+      .Field("lines", queue.lines)
+      .Field("bytes", queue.bytes)
+      .Field("waits", queue.waits);
+  json->EndObject();
+}
+
+void AddSource(const OnlineStatus& status, JsonWriter* json) {
   const SourceCounters& counters = status.counters;
-  return {{"name", status.source},
-          {"connections", counters.connections},
-          {"refused", counters.refused},
-          {"failures", counters.failures},
-          {"rotations", counters.rotations},
-          {"truncations", counters.truncations},
-          {"last_problem", counters.last_problem}};
+  json->Key("source").BeginObject();
+  json->Field("name", status.source)
+      .Field("connections", counters.connections)
+      .Field("refused", counters.refused)
+      .Field("failures", counters.failures)
+      .Field("rotations", counters.rotations)
+      .Field("truncations", counters.truncations)
+      .Field("last_problem", counters.last_problem);
+  json->EndObject();
 }
 
 }  // namespace
 
 std::string FormatStatus(const OnlineStatus& status) {
-  const Json json = {
-      {"program", "loopgrid"},
-      {"version", LOOPGRID_VERSION},
-      {"scans", status.scans},
-      {"nodes", status.nodes},
-      {"constraints", status.constraints},
-      {"closures", {{"tried", status.closures_tried}, {"accepted", status.closures_accepted}}},
-      {"unmatched", status.unmatched},
-      {"localized", status.localized},
-      {"latency_ms", LatencyJson(status.latency)},
-      {"lines", status.log.lines},
-      {"malformed", status.log.malformed},
-      {"queue",
-       {{"waiting", status.queue.waiting_lines},
-        {"lines", status.queue.lines},
-        {"bytes", status.queue.bytes},
-        {"waits", status.queue.waits}}},
-      {"source", SourceJson(status)},
-      {"memory_mb", MemoryMb()},
-      {"peak_memory_mb", PeakMemoryMb()}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  JsonWriter json(JsonWriter::Layout::kIndented);
+  json.BeginObject().Field("program", "loopgrid").Field("version", LOOPGRID_VERSION);
+  json.Field("scans", status.scans)
+      .Field("nodes", status.nodes)
+      .Field("constraints", status.constraints);
+  AddClosures(status, &json);
+  json.Field("unmatched", status.unmatched).Field("localized", status.localized);
+  AddLatency(status.latency, &json);
+  json.Field("lines", status.log.lines).Field("malformed", status.log.malformed);
+  AddQueue(status.queue, &json);
+  AddSource(status, &json);
+  json.Field("memory_mb", MemoryMb()).Field("peak_memory_mb", PeakMemoryMb());
+  json.EndObject();
+  return json.Take() + '\n';
 }
 
 }  // namespace loopgrid

@@ -9,7 +9,7 @@
 
 namespace loopgrid {
 
-/// A graph as a picture shows it.
+/// The poses and landmarks of a graph, in the form in which mapping/ draws them.
 template <typename Pose>
 GraphState StateOf(const PoseGraph<Pose>& graph, const std::string& title);
 

@@ -55,7 +55,7 @@ class Optimization {
         optimizer_(options.Solver()),
         report_(report) {}
 
-  /// Throws Error for what the options ask of this graph and cannot be had.
+  /// Throws Error if the options ask for something that this graph does not allow.
   void Prepare();
 
   void Optimize();
@@ -165,7 +165,8 @@ void Optimization<Pose>::RequireProgress() const {
   }
 }
 
-/// Whether F is TotalChi2, which is what can be told to be globally optimal.
+/// Whether F is TotalChi2. Only of that can CertifyOptimality tell whether it is the global
+/// optimum.
 template <typename Pose>
 bool Optimization<Pose>::IsSumOfSquares() const {
   return options_.parametrization == Parametrization::kManifold && report_->robust == 0;
@@ -199,7 +200,7 @@ void Optimization<Pose>::ComputeMarginals() {
   covariances_ = marginals->covariances();
   landmark_covariances_ = marginals->landmark_covariances();
   for (std::size_t i = 0; i < landmark_covariances_.size(); ++i) {
-    if (components_.of_landmark[i] >= 0) continue;  // seen
+    if (components_.of_landmark[i] >= 0) continue;  // an observation joins it to a node
     landmark_covariances_[i].diagonal().setConstant(std::numeric_limits<double>::infinity());
   }
 }
@@ -238,7 +239,7 @@ void Run(const OptimizeOptions& options, GraphFile<Pose> file, OutputFiles* outp
          ProgressBar* bar, OptimizeReport* report) {
   Optimization<Pose> optimization(options, std::move(file), report);
   optimization.Prepare();
-  outputs->Open();  // found out now, not after a long optimisation
+  outputs->Open();  // fails now, not after a long optimisation, if one cannot be written
 
   bar->ShowStage("optimising");
   const Stopwatch optimizing;
@@ -264,7 +265,7 @@ void OptimizeCommand(const OptimizeOptions& options) {
   const Stopwatch total;
   options.Validate();
   OutputFiles outputs(WantedOutputs(options));
-  // Before any other thread, of which the optimiser has some, and before any file.
+  // Made before the threads of the optimiser, and before any file is opened: see InterruptWatch.
   const InterruptWatch watch([&outputs] { outputs.Discard(); });
   ProgressBar bar(options.quiet);
   OptimizeReport report;

@@ -67,7 +67,7 @@ void OptimizeOptions::Validate() const {
   constexpr int kMostThreads = 1024;
   if (threads < 1 || threads > kMostThreads) {
     throw Error(ErrorCode::kUsage,
-                fmt::format("threads is {}, expected 1 to {}", threads, kMostThreads));
+                fmt::format("--threads is {}, expected 1 to {}", threads, kMostThreads));
   }
   Require(loss != LossChoice::kNone || !loss_width.has_value(),
           "--loss-width without --loss: there is no loss to be that wide");

@@ -38,7 +38,7 @@ inline constexpr std::array kLosses = {
 inline constexpr std::array kRobustSets = {Choice{"closures", RobustSet::kClosures},
                                            Choice{"all", RobustSet::kAll}};
 
-/// What `loopgrid optimize` is asked to do. Outputs with an empty name are not wanted.
+/// What `loopgrid optimize` is asked to do. An output with an empty name is not written.
 struct OptimizeOptions {
   std::string graph;                        ///< the graph to read: g2o or TORO, 2D or 3D
   std::string out;                          ///< the optimised graph, TORO or g2o by its name
@@ -53,19 +53,22 @@ struct OptimizeOptions {
   std::optional<double> loss_width;  ///< standard deviations
   std::optional<RobustSet> robust;
   int max_iterations = OptimizerOptions().max_iterations;
-  /// Share of F; less than what matters, so that results can be compared digit by digit.
+  /// Share of F. Smaller than needed for the poses, so that F can be compared with published optima
+  /// digit by digit.
   double tolerance = 1e-10;
   int threads = AllCores();
   bool lenient = false;  ///< as in GraphReadOptions
   bool json = false;     ///< print JSON instead of text
   bool quiet = false;    ///< do not show what is going on
 
-  /// Throws Error (kUsage) naming what is wrong.
+  /// Throws Error (kUsage) naming what is wrong. Options of the library may go by their own names;
+  /// Execute() replaces those.
   void Validate() const;
 
   OptimizerOptions Solver() const;
   RobustLoss Loss() const;
-  /// With Euler angles, which are for comparison, kAuto is kNone: the start is part of it.
+  /// `init`, but with Euler angles kNone for kAuto: they are there to be compared with, from the
+  /// same start.
   InitialGuess Start() const;
 
   static int AllCores();

@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
+#include "apps/output/json_writer.h"
+
 namespace loopgrid {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// "1 node", "2 nodes".
 std::string Counted(std::size_t count, const std::string& what) {
@@ -56,68 +55,112 @@ std::string FormatTrial(const StartTrial& trial) {
   return fmt::format("{}, {}", text, ToString(result.termination));
 }
 
-Json CertificateJson(const OptimizeReport& report) {
-  Json json;
-  json["explanation"] = ExplainOptimality(report);
-  const auto& certificate = report.certificate;
-  json["is_global"] = certificate && certificate->kind == OptimalityCertificate::Kind::kGlobal;
-  json["lower_bound"] = certificate ? Json(certificate->lower_bound) : Json();
-  return json;
-}
-
-Json TrialJson(const StartTrial& trial) {
+void AddTrial(const StartTrial& trial, JsonWriter* json) {
   const OptimizerResult& result = trial.result;
-  return {{"start", ToString(trial.start)},      {"error_before", result.initial_error},
-          {"error_after", result.final_error},   {"iterations", result.iterations},
-          {"uphill_steps", result.uphill_steps}, {"termination", ToString(result.termination)}};
+  json->BeginObject();
+  json->Field("start", ToString(trial.start))
+      .Field("error_before", result.initial_error)
+      .Field("error_after", result.final_error)
+      .Field("iterations", result.iterations)
+      .Field("uphill_steps", result.uphill_steps)
+      .Field("termination", ToString(result.termination));
+  json->EndObject();
 }
 
-Json OptionsJson(const OptimizeOptions& options) {
-  Json json = {{"method", NameOf(kMethods, options.method)},
-               {"parametrization", NameOf(kParametrizations, options.parametrization)},
-               {"init", NameOf(kInitialGuesses, options.init)},
-               {"loss", NameOf(kLosses, options.loss)},
-               {"max_iterations", options.max_iterations},
-               {"tolerance", options.tolerance},
-               {"lenient", options.lenient}};
+void AddOptions(const OptimizeOptions& options, JsonWriter* json) {
+  json->Key("options").BeginObject();
+  json->Field("method", NameOf(kMethods, options.method))
+      .Field("parametrization", NameOf(kParametrizations, options.parametrization))
+      .Field("init", NameOf(kInitialGuesses, options.init))
+      .Field("loss", NameOf(kLosses, options.loss))
+      .Field("max_iterations", options.max_iterations)
+      .Field("tolerance", options.tolerance)
+      .Field("lenient", options.lenient);
   if (options.loss != LossChoice::kNone) {
-    json["loss_width"] = options.Loss().width;
-    json["robust"] = NameOf(kRobustSets, options.robust.value_or(RobustSet::kClosures));
+    json->Field("loss_width", options.Loss().width)
+        .Field("robust", NameOf(kRobustSets, options.robust.value_or(RobustSet::kClosures)));
   }
-  if (options.relative_to) json["relative_to"] = *options.relative_to;
-  return json;
+  if (options.relative_to) json->Field("relative_to", *options.relative_to);
+  json->EndObject();
 }
 
-Json GraphJson(const OptimizeReport& report) {
-  const GraphNotes& notes = report.notes;
-  return {{"file", report.options.graph},
-          {"dimensions", report.dimensions},
-          {"nodes", report.nodes},
-          {"landmarks", report.landmarks},
-          {"sequential_constraints", report.sequential},
-          {"closures", report.closures},
-          {"observations", report.observations},
-          {"components", report.components},
-          {"held", report.held},
-          {"fixed_in_file", report.fixed},
-          {"degrees_of_freedom", report.degrees_of_freedom},
-          {"notes",
-           {{"data_lines", notes.data_lines.count},
-            {"unknown_tags", notes.unknown_tags.count},
-            {"indefinite_information", notes.indefinite_information.count},
-            {"normalized_quaternions", notes.normalized_quaternions.count},
-            {"guessed_nodes", notes.guessed_nodes},
-            {"first_data_lines", notes.data_lines.messages},
-            {"first_unknown_tags", notes.unknown_tags.messages},
-            {"first_indefinite_information", notes.indefinite_information.messages},
-            {"first_normalized_quaternions", notes.normalized_quaternions.messages}}}};
+void AddNotes(const GraphNotes& notes, JsonWriter* json) {
+  json->Key("notes").BeginObject();
+  json->Field("data_lines", notes.data_lines.count)
+      .Field("unknown_tags", notes.unknown_tags.count)
+      .Field("indefinite_information", notes.indefinite_information.count)
+      .Field("normalized_quaternions", notes.normalized_quaternions.count)
+      .Field("guessed_nodes", notes.guessed_nodes)
+      .Field("first_data_lines", notes.data_lines.messages)
+      .Field("first_unknown_tags", notes.unknown_tags.messages)
+      .Field("first_indefinite_information", notes.indefinite_information.messages)
+      .Field("first_normalized_quaternions", notes.normalized_quaternions.messages);
+  json->EndObject();
 }
 
-Json TimingsJson(const OptimizeReport& report) {
-  return {{"total_s", report.total_seconds},           {"reading_s", report.reading_seconds},
-          {"optimizing_s", report.optimizing_seconds}, {"marginals_s", report.marginals_seconds},
-          {"writing_s", report.writing_seconds},       {"threads", report.options.threads},
-          {"peak_memory_mb", report.peak_memory_mb}};
+void AddGraph(const OptimizeReport& report, JsonWriter* json) {
+  json->Key("graph").BeginObject();
+  json->Field("file", report.options.graph)
+      .Field("dimensions", report.dimensions)
+      .Field("nodes", report.nodes)
+      .Field("landmarks", report.landmarks)
+      .Field("sequential_constraints", report.sequential)
+      .Field("closures", report.closures)
+      .Field("observations", report.observations)
+      .Field("components", report.components)
+      .Field("held", report.held)
+      .Field("fixed_in_file", report.fixed)
+      .Field("degrees_of_freedom", report.degrees_of_freedom);
+  AddNotes(report.notes, json);
+  json->EndObject();
+}
+
+void AddResult(const OptimizeReport& report, JsonWriter* json) {
+  const OptimizerResult& result = report.result();
+  json->Key("error").BeginObject();
+  json->Field("before", report.file_error)
+      .Field("after", result.final_error)
+      .Field("chi2_after", report.final_chi2);
+  json->EndObject();
+  json->Field("iterations", result.iterations)
+      .Field("uphill_steps", result.uphill_steps)
+      .Field("termination", ToString(result.termination))
+      .Field("converged", result.termination == Termination::kConverged);
+}
+
+void AddStarts(const OptimizeReport& report, JsonWriter* json) {
+  json->Key("start").BeginObject();
+  json->Field("used", ToString(report.trials[report.best].start))
+      .Field("first_because", WhyStart(report));
+  json->Key("trials").BeginArray();
+  for (const StartTrial& trial : report.trials) AddTrial(trial, json);
+  json->EndArray().EndObject();
+}
+
+void AddCertificate(const OptimizeReport& report, JsonWriter* json) {
+  const auto& certificate = report.certificate;
+  json->Key("optimality").BeginObject();
+  json->Field("explanation", ExplainOptimality(report))
+      .Field("is_global", certificate && certificate->kind == OptimalityCertificate::Kind::kGlobal)
+      .Key("lower_bound");
+  if (certificate) {
+    json->Value(certificate->lower_bound);
+  } else {
+    json->Null();
+  }
+  json->EndObject();
+}
+
+void AddTimings(const OptimizeReport& report, JsonWriter* json) {
+  json->Key("timings").BeginObject();
+  json->Field("total_s", report.total_seconds)
+      .Field("reading_s", report.reading_seconds)
+      .Field("optimizing_s", report.optimizing_seconds)
+      .Field("marginals_s", report.marginals_seconds)
+      .Field("writing_s", report.writing_seconds)
+      .Field("threads", report.options.threads)
+      .Field("peak_memory_mb", report.peak_memory_mb);
+  json->EndObject();
 }
 
 class Lines {
@@ -230,30 +273,21 @@ std::string ExplainOptimality(const OptimizeReport& report) {
 }
 
 std::string FormatOptimizeJson(const OptimizeReport& report) {
-  const OptimizerResult& result = report.result();
-  Json json;
-  json["program"] = "loopgrid";
-  json["version"] = LOOPGRID_VERSION;
-  json["options"] = OptionsJson(report.options);
-  json["graph"] = GraphJson(report);
-  json["error"] = {{"before", report.file_error},
-                   {"after", result.final_error},
-                   {"chi2_after", report.final_chi2}};
-  json["iterations"] = result.iterations;
-  json["uphill_steps"] = result.uphill_steps;
-  json["termination"] = ToString(result.termination);
-  json["converged"] = result.termination == Termination::kConverged;
-  json["start"] = {{"used", ToString(report.trials[report.best].start)},
-                   {"first_because", WhyStart(report)}};
-  for (const StartTrial& trial : report.trials) json["start"]["trials"].push_back(TrialJson(trial));
-  json["optimality"] = CertificateJson(report);
+  JsonWriter json(JsonWriter::Layout::kIndented);
+  json.BeginObject().Field("program", "loopgrid").Field("version", LOOPGRID_VERSION);
+  AddOptions(report.options, &json);
+  AddGraph(report, &json);
+  AddResult(report, &json);
+  AddStarts(report, &json);
+  AddCertificate(report, &json);
   if (report.robust > 0) {
-    json["robust"] = {{"constraints", report.robust}, {"outliers", report.outliers}};
+    json.Key("robust").BeginObject();
+    json.Field("constraints", report.robust).Field("outliers", report.outliers).EndObject();
   }
-  json["files"] = report.files;
-  json["timings"] = TimingsJson(report);
-  // File names need not be UTF-8; JSON does.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  json.Field("files", report.files);
+  AddTimings(report, &json);
+  json.EndObject();
+  return json.Take() + '\n';
 }
 
 std::string FormatOptimizeSummary(const OptimizeReport& report) {

@@ -13,7 +13,7 @@
 
 namespace loopgrid {
 
-/// Everything that an optimisation tells about itself, as plain values.
+/// What is reported about an optimisation, as plain values.
 struct OptimizeReport {
   OptimizeOptions options;
 
@@ -26,7 +26,7 @@ struct OptimizeReport {
   std::size_t components = 0;
   std::vector<std::int64_t> held;       ///< ids of the nodes that did not move
   std::size_t fixed = 0;                ///< how many of these the file fixes
-  std::int64_t degrees_of_freedom = 0;  ///< what F is on average if the information is true
+  std::int64_t degrees_of_freedom = 0;  ///< mean of F if the information matrices are true
   GraphNotes notes;
 
   double file_error = 0.0;         ///< F at the poses in the file
@@ -34,8 +34,9 @@ struct OptimizeReport {
   std::size_t best = 0;
   double final_chi2 = 0.0;  ///< TotalChi2 at the end
   std::optional<OptimalityCertificate> certificate;
-  std::size_t robust = 0;    ///< constraints and observations that the loss applies to
-  std::size_t outliers = 0;  ///< of these, those whose error is beyond the loss's width at the end
+  std::size_t robust = 0;  ///< constraints and observations that the loss applies to
+  std::size_t outliers =
+      0;  ///< of these, how many have an error beyond the loss's width at the end
   std::vector<std::string> files;  ///< written
 
   double reading_seconds = 0.0;
@@ -51,10 +52,11 @@ struct OptimizeReport {
 /// Why there is no certificate, or what it says; one line.
 std::string ExplainOptimality(const OptimizeReport& report);
 
-/// For programs. All that may differ between two runs on the same input is under the key "timings".
+/// JSON, for programs. Only members under the key "timings" may differ between two runs on the same
+/// input.
 std::string FormatOptimizeJson(const OptimizeReport& report);
 
-/// For people; F with 12 digits, so that it can be compared with published optima.
+/// Text, for people; F with 12 digits, so that it can be compared with published optima.
 std::string FormatOptimizeSummary(const OptimizeReport& report);
 
 }  // namespace loopgrid

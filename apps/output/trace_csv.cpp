@@ -41,14 +41,6 @@ std::size_t ColumnOf(std::string_view name, const std::vector<std::string_view>&
       name));
 }
 
-/// A field as a message shows it: short, and on one line whatever bytes it holds.
-std::string Quoted(std::string_view field) {
-  std::string text(field.substr(0, 40));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return "'" + text + "'";
-}
-
 double ParseField(std::string_view field, std::string_view name, const LineReader& lines) {
   double value = 0.0;
   if (ParseNumber(field, &value)) return value;

@@ -1,19 +1,23 @@
-#include <CLI/CLI.hpp>
-
-#include "apps/cli/arguments.h"
+#include "apps/plot/plot_arguments.h"
 
 namespace loopgrid {
 
-void AddPlot(CLI::App* program, PlotOptions* options) {
-  CLI::App* plot = program->add_subcommand("plot", "Draw how the error fell, one curve a trace");
-  plot->add_option("TRACE", options->traces, "What loopgrid optimize --trace wrote; any number")
-      ->required()
-      ->type_name("");
-  RequireName(plot->add_option("--out", options->out, "The picture to write, PNG"))
-      ->required()
-      ->type_name("FILE");
-  plot->footer(
-      "F(x) over the iterations; the axis is logarithmic if F falls by more than a factor of 20.");
+Command DescribePlot(PlotOptions* options) {
+  return {.name = "plot",
+          .summary = "Draw how the error fell, one curve a trace",
+          .arguments = {{.name = "TRACE",
+                         .help = "What loopgrid optimize --trace wrote; any number",
+                         .target = &options->traces,
+                         .required = true},
+                        {.name = "--out",
+                         .unit = "FILE",
+                         .help = "The picture to write, PNG",
+                         .target = &options->out,
+                         .required = true}},
+          .footer =
+              "F(x) over the iterations; the axis is logarithmic if F falls by more than a "
+              "factor of 20.",
+          .action = [options] { PlotCommand(*options); }};
 }
 
 }  // namespace loopgrid

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
+#include "apps/replay/replay_arguments.h"
 
-#include "apps/cli/arguments.h"
+#include "apps/replay/replay_command.h"
 
 namespace loopgrid {
 namespace {
@@ -12,26 +12,34 @@ constexpr const char* kReplayFooter =
 
 }  // namespace
 
-void AddReplay(CLI::App* program, ReplayOptions* options) {
-  CLI::App* replay = program->add_subcommand("replay", "Play a log as if it were just recorded");
-  replay->add_option("LOG", options->log, "The log: CARMEN text, may be gzipped; known by content")
-      ->required()
-      ->type_name("");
-  replay
-      ->add_option("--speed", options->speed,
-                   "Times real time; 0: as fast as the receiver takes it")
-      ->capture_default_str()
-      ->type_name("N");
-  RequireName(replay->add_option("--to", options->to,
-                                 "Connect and send the log there [default: standard output]"))
-      ->type_name("HOST:PORT");
-  replay->add_option("--loop", options->loop, "Play it so many times; 0: without end")
-      ->capture_default_str()
-      ->type_name("N");
-  replay->add_option("--from-line", options->from_line, "Begin at this line")
-      ->capture_default_str()
-      ->type_name("L");
-  replay->footer(kReplayFooter);
+Command DescribeReplay(ReplayOptions* options) {
+  return {.name = "replay",
+          .summary = "Play a log as if it were just recorded",
+          .arguments = {{.name = "LOG",
+                         .help = "The log: CARMEN text, may be gzipped; known by content",
+                         .target = &options->log,
+                         .required = true},
+                        {.name = "--speed",
+                         .unit = "N",
+                         .help = "Times real time; 0: as fast as the receiver takes it",
+                         .target = &options->speed,
+                         .shows_default = true},
+                        {.name = "--to",
+                         .unit = "HOST:PORT",
+                         .help = "Connect and send the log there [default: standard output]",
+                         .target = &options->to},
+                        {.name = "--loop",
+                         .unit = "N",
+                         .help = "Play it so many times; 0: without end",
+                         .target = &options->loop,
+                         .shows_default = true},
+                        {.name = "--from-line",
+                         .unit = "L",
+                         .help = "Begin at this line",
+                         .target = &options->from_line,
+                         .shows_default = true}},
+          .footer = kReplayFooter,
+          .action = [options] { ReplayCommand(*options); }};
 }
 
 }  // namespace loopgrid

@@ -13,16 +13,16 @@ void ReplayOptions::Validate() const {
   // Written so that NaN does not pass.
   if (speed != 0.0 && !(speed >= kSlowest && speed <= kFastest)) {
     throw Error(ErrorCode::kUsage,
-                fmt::format("speed is {}, expected 0 or {} to {}", speed, kSlowest, kFastest));
+                fmt::format("--speed is {}, expected 0 or {} to {}", speed, kSlowest, kFastest));
   }
   if (loop < 0) {
-    throw Error(ErrorCode::kUsage, fmt::format("loop is {}, expected 0 or more", loop));
+    throw Error(ErrorCode::kUsage, fmt::format("--loop is {}, expected 0 or more", loop));
   }
   if (from_line < 1) {
-    throw Error(ErrorCode::kUsage, fmt::format("from-line is {}, expected 1 or more", from_line));
+    throw Error(ErrorCode::kUsage, fmt::format("--from-line is {}, expected 1 or more", from_line));
   }
   if (!to.empty() && ParseHostPort(to).port == 0) {
-    throw Error(ErrorCode::kUsage, "to is " + to + ", expected a port from 1 to 65535");
+    throw Error(ErrorCode::kUsage, "--to is " + to + ", expected a port from 1 to 65535");
   }
 }
 

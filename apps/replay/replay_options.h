@@ -13,7 +13,7 @@ struct ReplayOptions {
   std::int64_t loop = 1;       ///< how often the log is played; 0: without end
   std::int64_t from_line = 1;  ///< the first line to play
 
-  /// Throws Error (kUsage) naming the field, its value and the bound.
+  /// Throws Error (kUsage) naming the option, its value and its bounds.
   void Validate() const;
 };
 

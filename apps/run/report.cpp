@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "apps/output/json_writer.h"
+#include "apps/settings/mapping_options.h"
 
 namespace loopgrid {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::int64_t CountTried(const RunReport& report) {
   std::int64_t tried = 0;
@@ -28,43 +28,50 @@ double RealTimeFactor(const RunReport& report) {
   return report.total_seconds > 0.0 ? report.data_seconds / report.total_seconds : 0.0;
 }
 
-Json OptionsJson(const RunOptions& options) {
-  return {{"resolution", options.resolution},
-          {"node_distance", options.slam.node_distance},
-          {"node_angle", options.slam.node_angle},
-          {"strict", options.strict}};
-}
-
-Json LogJson(const RunReport& report) {
+void AddLog(const RunReport& report, JsonWriter* json) {
   const LogStatistics& log = report.log;
-  return {{"file", report.options.log},
-          {"lines", log.lines},
-          {"scans", log.scans},
-          {"odometry", log.odometry},
-          {"ignored", log.ignored},
-          {"malformed", log.malformed},
-          {"first_problems", log.first_problems},
-          {"seconds", report.data_seconds}};
+  json->Key("log").BeginObject();
+  json->Field("file", report.options.log)
+      .Field("lines", log.lines)
+      .Field("scans", log.scans)
+      .Field("odometry", log.odometry)
+      .Field("ignored", log.ignored)
+      .Field("malformed", log.malformed)
+      .Field("first_problems", log.first_problems)
+      .Field("seconds", report.data_seconds);
+  json->EndObject();
 }
 
-Json ClosuresJson(const RunReport& report) {
-  Json json = {{"tried", CountTried(report)}, {"accepted", CountAccepted(report)}};
-  json["outcomes"] = report.closures;
-  return json;
+void AddClosures(const RunReport& report, JsonWriter* json) {
+  json->Key("closures").BeginObject();
+  json->Field("tried", CountTried(report)).Field("accepted", CountAccepted(report));
+  json->Key("outcomes").BeginObject();
+  for (const auto& [outcome, count] : report.closures) json->Field(outcome, count);
+  json->EndObject().EndObject();
 }
 
-Json TimingsJson(const RunReport& report) {
+void AddMap(const RunReport& report, JsonWriter* json) {
+  json->Key("map").BeginObject();
+  json->Field("width", report.map_width)
+      .Field("height", report.map_height)
+      .Field("resolution", report.options.resolution);
+  json->EndObject();
+}
+
+void AddTimings(const RunReport& report, JsonWriter* json) {
   const SlamTimes& times = report.slam.times;
-  return {{"total_s", report.total_seconds},
-          {"reading_s", report.reading_seconds},
-          {"tracking_s", times.tracking},
-          {"closing_s", times.closing},
-          {"optimizing_s", times.optimizing},
-          {"finishing_s", times.finishing},
-          {"drawing_s", report.drawing_seconds},
-          {"writing_s", report.writing_seconds},
-          {"real_time_factor", RealTimeFactor(report)},
-          {"peak_memory_mb", report.peak_memory_mb}};
+  json->Key("timings").BeginObject();
+  json->Field("total_s", report.total_seconds)
+      .Field("reading_s", report.reading_seconds)
+      .Field("tracking_s", times.tracking)
+      .Field("closing_s", times.closing)
+      .Field("optimizing_s", times.optimizing)
+      .Field("finishing_s", times.finishing)
+      .Field("drawing_s", report.drawing_seconds)
+      .Field("writing_s", report.writing_seconds)
+      .Field("real_time_factor", RealTimeFactor(report))
+      .Field("peak_memory_mb", report.peak_memory_mb);
+  json->EndObject();
 }
 
 }  // namespace
@@ -80,24 +87,25 @@ void RecordingClock::Add(double timestamp) {
 double RecordingClock::seconds() const { return std::max(sum_, 0.0); }
 
 std::string FormatReportJson(const RunReport& report) {
-  Json json;
-  json["program"] = "loopgrid";
-  json["version"] = LOOPGRID_VERSION;
-  json["options"] = OptionsJson(report.options);
-  json["log"] = LogJson(report);
-  json["scans"] = report.slam.scans;
-  json["failed_matches"] = report.slam.failed_matches;
-  json["unusable_scans"] = report.slam.unusable_scans;
-  json["nodes"] = report.nodes;
-  json["constraints"] = report.constraints;
-  json["closures"] = ClosuresJson(report);
-  json["error"] = {{"before", report.slam.error_before}, {"after", report.slam.error_after}};
-  json["map"] = {{"width", report.map_width},
-                 {"height", report.map_height},
-                 {"resolution", report.options.resolution}};
-  json["timings"] = TimingsJson(report);
-  // File names need not be UTF-8; JSON does.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  JsonWriter json(JsonWriter::Layout::kIndented);
+  json.BeginObject().Field("program", "loopgrid").Field("version", LOOPGRID_VERSION);
+  json.Key("options").BeginObject();
+  AddMappingFields(report.options, &json);
+  json.EndObject();
+  AddLog(report, &json);
+  json.Field("scans", report.slam.scans)
+      .Field("failed_matches", report.slam.failed_matches)
+      .Field("unusable_scans", report.slam.unusable_scans)
+      .Field("nodes", report.nodes)
+      .Field("constraints", report.constraints);
+  AddClosures(report, &json);
+  json.Key("error").BeginObject();
+  json.Field("before", report.slam.error_before).Field("after", report.slam.error_after);
+  json.EndObject();
+  AddMap(report, &json);
+  AddTimings(report, &json);
+  json.EndObject();
+  return json.Take() + '\n';
 }
 
 std::string FormatSummary(const RunReport& report) {

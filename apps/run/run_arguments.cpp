@@ -1,6 +1,7 @@
-#include <CLI/CLI.hpp>
+#include "apps/run/run_arguments.h"
 
-#include "apps/cli/arguments.h"
+#include "apps/run/run_command.h"
+#include "apps/settings/mapping_options.h"
 
 namespace loopgrid {
 namespace {
@@ -19,37 +20,26 @@ constexpr const char* kRunFooter =
 
 }  // namespace
 
-void AddMapping(CLI::App* command, RunOptions* options) {
-  command->add_option("--resolution", options->resolution, "Side of a map cell, 0.01 to 1 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  command
-      ->add_option("--node-distance", options->slam.node_distance,
-                   "A new node of the graph after this much travel, 0.05 to 10 metres")
-      ->capture_default_str()
-      ->type_name("METRES");
-  command
-      ->add_option("--node-angle", options->slam.node_angle,
-                   "... or after this much turning, 0.05 to 3 radians")
-      ->capture_default_str()
-      ->type_name("RADIANS");
-  command->add_flag("--strict", options->strict,
-                    "Stop at the first malformed line of the log [default: skip and count them]");
-  command->add_flag("--quiet", options->quiet,
-                    "No progress bar [default: one if standard error is a terminal]");
-}
-
-void AddRun(CLI::App* program, RunOptions* options) {
-  CLI::App* run = program->add_subcommand("run", "Make a map of a log");
-  run->add_option("LOG", options->log,
-                  "The log: CARMEN text or MRPT rawlog, either may be gzipped; known by content")
-      ->required()
-      ->type_name("");
-  run->add_option("--out", options->out, "Folder to write to; made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  AddMapping(run, options);
-  run->footer(kRunFooter);
+Command DescribeRun(RunOptions* options) {
+  Command command{
+      .name = "run",
+      .summary = "Make a map of a log",
+      .arguments = {{.name = "LOG",
+                     .help = "The log: CARMEN text or MRPT rawlog, either may be gzipped; known by "
+                             "content",
+                     .target = &options->log,
+                     .required = true},
+                    {.name = "--out",
+                     .unit = "DIR",
+                     .help = "Folder to write to; made if it is not there",
+                     .target = &options->out,
+                     .required = true}},
+      .footer = kRunFooter,
+      .action = [options] { RunCommand(*options); }};
+  for (Argument& argument : MappingArguments(options, nullptr)) {
+    command.arguments.push_back(std::move(argument));
+  }
+  return command;
 }
 
 }  // namespace loopgrid

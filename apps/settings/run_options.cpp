@@ -1,19 +1,11 @@
 #include "apps/settings/run_options.h"
 
-#include <fmt/format.h>
-
-#include "backend/base/error.h"
+#include "apps/settings/mapping_options.h"
 
 namespace loopgrid {
 
 void RunOptions::Validate() const {
-  constexpr double kFinest = 0.01;
-  constexpr double kCoarsest = 1.0;
-  // Written so that NaN does not pass.
-  if (!(resolution >= kFinest && resolution <= kCoarsest)) {
-    throw Error(ErrorCode::kUsage,
-                fmt::format("resolution is {}, expected {} to {}", resolution, kFinest, kCoarsest));
-  }
+  ValidateMapping(*this);
   slam.Validate();
 }
 

@@ -15,7 +15,7 @@ struct RunOptions {
   bool quiet = false;        ///< no progress bar
   SlamOptions slam;
 
-  /// Throws Error (kUsage) naming the field, its value and its bound.
+  /// Throws Error (kUsage) naming the option, its value and its bounds.
   void Validate() const;
 };
 

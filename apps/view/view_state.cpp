@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <string_view>
+
+#include "apps/output/closure_fields.h"
+#include "apps/output/json_writer.h"
 
 namespace loopgrid {
 namespace {
@@ -14,30 +15,37 @@ constexpr std::size_t kMaxPoses = 64;     // in one batch
 constexpr std::size_t kMaxRefused = 200;  // remembered
 constexpr double kMaxStep = 5.0;  // metres; a robot that is this far off begins a new session
 
-// JSON knows no NaN and no infinity.
-std::string Number(double value, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "null";
-}
-
-std::string SmallNumber(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "null";
-}
-
 std::string Event(std::string_view name, std::string_view json) {
   return fmt::format("event: {}\ndata: {}\n\n", name, json);
 }
 
-// Covariance (x, y, theta) in the frame of `pose` -> the four numbers that viewers draw, in the map
-// frame: xx, xy, yy and that of the angle.
-std::string CovarianceInMap(const SE2& pose, const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix2d rotation = pose.rotation();
-  const Eigen::Matrix2d xy = rotation * covariance.topLeftCorner<2, 2>() * rotation.transpose();
-  return fmt::format("{},{},{},{}", SmallNumber(xy(0, 0)), SmallNumber(xy(0, 1)),
-                     SmallNumber(xy(1, 1)), SmallNumber(covariance(2, 2)));
+/// Text of a JSON object; `add_members` adds what is in it.
+std::string ObjectText(const auto& add_members) {
+  JsonWriter json(JsonWriter::Layout::kOneLine);
+  json.BeginObject();
+  add_members(&json);
+  json.EndObject();
+  return json.Take();
 }
 
-std::string Coordinates(const SE2& pose) {
-  return fmt::format("{},{},{}", Number(pose.x(), 3), Number(pose.y(), 3), Number(pose.theta(), 4));
+/// Text of a JSON object with one member, an array of what is JSON text already.
+std::string ObjectWithArray(const char* name, const auto& elements) {
+  return ObjectText([&](JsonWriter* json) {
+    json->Key(name).BeginArray();
+    for (const std::string& element : elements) json->Raw(element);
+    json->EndArray();
+  });
+}
+
+/// Adds the four numbers that the page draws of a covariance (x, y, theta) in the frame of `pose`:
+/// xx, xy and yy in the map frame, and the angle's.
+void AddCovarianceInMap(const SE2& pose, const Eigen::Matrix3d& covariance, JsonWriter* json) {
+  constexpr int kDigits = 3;
+  const Eigen::Matrix2d rotation = pose.rotation();
+  const Eigen::Matrix2d xy = rotation * covariance.topLeftCorner<2, 2>() * rotation.transpose();
+  for (const double entry : {xy(0, 0), xy(0, 1), xy(1, 1), covariance(2, 2)}) {
+    json->Value(RoundedNumber{entry, kDigits});
+  }
 }
 
 bool IsRefused(ClosureOutcome outcome) {
@@ -45,21 +53,21 @@ bool IsRefused(ClosureOutcome outcome) {
 }
 
 std::string ClosureJson(std::int64_t id, const Closure& record) {
-  return fmt::format(
-      R"({{"id":{},"from":{},"to":{},"time":{},"outcome":"{}","reason":"{}","score":{},)"
-      R"("distance":{},"distance_sigmas":{}}})",
-      id, record.from, record.to, Number(record.timestamp, 3), ToString(record.outcome),
-      Explain(record.outcome), Number(record.score, 3),
-      Number(record.T_from_to.translation().norm(), 2), Number(record.distance_sigmas, 2));
+  return ObjectText([&](JsonWriter* json) {
+    json->Field("id", id);
+    AddClosurePageFields(record, json);
+  });
 }
 
 std::string TilesJson(const std::vector<TileVersion>& tiles) {
-  std::string text;
+  JsonWriter json(JsonWriter::Layout::kOneLine);
+  json.BeginArray();
   for (const TileVersion& tile : tiles) {
-    fmt::format_to(std::back_inserter(text), "{}[{},{},{},{}]", text.empty() ? "" : ",",
-                   tile.id.level, tile.id.x, tile.id.y, tile.version);
+    json.BeginArray().Value(tile.id.level).Value(tile.id.x).Value(tile.id.y);
+    json.Value(tile.version).EndArray();
   }
-  return '[' + text + ']';
+  json.EndArray();
+  return json.Take();
 }
 
 }  // namespace
@@ -106,13 +114,24 @@ double ViewState::StepTo(const OnlineUpdate& update) const {
 std::string ViewState::PoseJson(const OnlineUpdate& update) {
   const TrackedScan& tracked = update.tracked;
   const SE2& pose = tracked.T_map_robot;
-  return fmt::format(
-      R"({{"scan":{},"time":{},"x":{},"y":{},"theta":{},"covariance":[{}],"node":{},)"
-      R"("matched":{},"localized":{},"latency_ms":{}}})",
-      tracked.scan, Number(update.timestamp, 3), Number(pose.x(), 3), Number(pose.y(), 3),
-      Number(pose.theta(), 4), CovarianceInMap(pose, tracked.covariance),
-      tracked.node < 0 ? "null" : std::to_string(tracked.node), tracked.matched, tracked.localized,
-      Number(1e3 * update.latency_seconds, 2));
+  return ObjectText([&](JsonWriter* json) {
+    json->Field("scan", tracked.scan)
+        .Field("time", FixedNumber{update.timestamp, 3})
+        .Field("x", FixedNumber{pose.x(), 3})
+        .Field("y", FixedNumber{pose.y(), 3})
+        .Field("theta", FixedNumber{pose.theta(), 4});
+    json->Key("covariance").BeginArray();
+    AddCovarianceInMap(pose, tracked.covariance, json);
+    json->EndArray().Key("node");
+    if (tracked.node < 0) {
+      json->Null();
+    } else {
+      json->Value(tracked.node);
+    }
+    json->Field("matched", tracked.matched)
+        .Field("localized", tracked.localized)
+        .Field("latency_ms", FixedNumber{1e3 * update.latency_seconds, 2});
+  });
 }
 
 void ViewState::AddNode(const SE2& pose) {
@@ -153,15 +172,18 @@ void ViewState::TakeClosure(const Closure& record) {
   }
 }
 
-std::string ViewState::NodesJson(std::size_t first) const {
-  std::string text;
+void ViewState::AddNodes(std::size_t first, JsonWriter* json) const {
+  json->Field("first", first).Key("nodes").BeginArray();
   for (std::size_t i = first; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    fmt::format_to(std::back_inserter(text), "{}[{},{},{}]", i == first ? "" : ",",
-                   Coordinates(node.pose), CovarianceInMap(node.pose, node.covariance),
-                   node.linked ? 1 : 0);
+    json->BeginArray();
+    json->Value(FixedNumber{node.pose.x(), 3})
+        .Value(FixedNumber{node.pose.y(), 3})
+        .Value(FixedNumber{node.pose.theta(), 4});
+    AddCovarianceInMap(node.pose, node.covariance, json);
+    json->Value(node.linked ? 1 : 0).EndArray();
   }
-  return fmt::format(R"("first":{},"nodes":[{}])", first, text);
+  json->EndArray();
 }
 
 std::string ViewState::CountersJson() const {
@@ -173,11 +195,15 @@ std::string ViewState::CountersJson() const {
   for (const auto& [outcome, number] : outcomes_) tried += number;
   const std::int64_t accepted = count(ClosureOutcome::kAccepted);
   const std::int64_t pending = count(ClosureOutcome::kPending);
-  return fmt::format(
-      R"({{"scans":{},"unmatched":{},"nodes":{},"accepted":{},"pending":{},"refused":{},)"
-      R"("travelled":{}}})",
-      scans_, unmatched_, nodes_.size(), accepted, pending, tried - accepted - pending,
-      Number(travelled_, 2));
+  return ObjectText([&](JsonWriter* json) {
+    json->Field("scans", scans_)
+        .Field("unmatched", unmatched_)
+        .Field("nodes", nodes_.size())
+        .Field("accepted", accepted)
+        .Field("pending", pending)
+        .Field("refused", tried - accepted - pending)
+        .Field("travelled", FixedNumber{travelled_, 2});
+  });
 }
 
 std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool with_moved_nodes) {
@@ -187,11 +213,11 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
     nodes_moved_ = false;
   }
   if (nodes_told_ < nodes_.size()) {
-    text += Event("nodes", '{' + NodesJson(nodes_told_) + '}');
+    text += Event("nodes", ObjectText([this](JsonWriter* json) { AddNodes(nodes_told_, json); }));
     nodes_told_ = nodes_.size();
   }
   if (!poses_.empty()) {
-    text += Event("poses", fmt::format(R"({{"poses":[{}]}})", fmt::join(poses_, ",")));
+    text += Event("poses", ObjectWithArray("poses", poses_));
   }
   if (!changed_closures_.empty()) {
     std::vector<std::string> changed;
@@ -199,28 +225,37 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
       const ShownClosure& closure = closures_.at(pair);
       changed.push_back(ClosureJson(closure.id, closure.record));
     }
-    text += Event("closures", fmt::format(R"({{"closures":[{}]}})", fmt::join(changed, ",")));
+    text += Event("closures", ObjectWithArray("closures", changed));
   }
   if (!poses_.empty() || !changed_closures_.empty()) text += Event("counters", CountersJson());
   poses_.clear();
   changed_closures_.clear();
-  if (!tiles.empty()) text += Event("tiles", fmt::format(R"({{"tiles":{}}})", TilesJson(tiles)));
+  if (!tiles.empty())
+    text +=
+        Event("tiles",
+              ObjectText([&tiles](JsonWriter* json) { json->Key("tiles").Raw(TilesJson(tiles)); }));
   if (ended_ && !end_told_) text += Event("end", "{}");
   end_told_ = ended_;
   return text;
 }
 
 std::string ViewState::Snapshot(const std::vector<TileVersion>& tiles) const {
-  std::vector<std::string> closures;
-  for (const auto& [pair, closure] : closures_) {
-    closures.push_back(ClosureJson(closure.id, closure.record));
-  }
-  return Event("state",
-               fmt::format(R"({{"run":"{}","resolution":{},"tile_side":{},"tile_levels":{},)"
-                           R"("ended":{},"pose":{},{},"closures":[{}],"counters":{},"tiles":{}}})",
-                           run_, resolution_, kTileSide, kTileLevels, ended_,
-                           last_pose_.empty() ? "null" : last_pose_, NodesJson(0),
-                           fmt::join(closures, ","), CountersJson(), TilesJson(tiles)));
+  const std::string text = ObjectText([&](JsonWriter* json) {
+    json->Field("run", run_)
+        .Field("resolution", resolution_)
+        .Field("tile_side", kTileSide)
+        .Field("tile_levels", kTileLevels)
+        .Field("ended", ended_);
+    json->Key("pose").Raw(last_pose_.empty() ? "null" : last_pose_);
+    AddNodes(0, json);
+    json->Key("closures").BeginArray();
+    for (const auto& [pair, closure] : closures_) {
+      json->Raw(ClosureJson(closure.id, closure.record));
+    }
+    json->EndArray();
+    json->Key("counters").Raw(CountersJson()).Key("tiles").Raw(TilesJson(tiles));
+  });
+  return Event("state", text);
 }
 
 }  // namespace loopgrid

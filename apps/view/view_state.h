@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -11,6 +12,7 @@
 
 #include "apps/live/map_tiles.h"
 #include "apps/live/online_update.h"
+#include "apps/output/json_writer.h"
 
 namespace loopgrid {
 
@@ -56,7 +58,8 @@ class ViewState {
   void AddNode(const SE2& pose);
   void TakeNodes(const NodeStates& states);
   void TakeClosure(const Closure& record);
-  std::string NodesJson(std::size_t first) const;
+  /// Adds the nodes from `first` on as members "first" and "nodes".
+  void AddNodes(std::size_t first, JsonWriter* json) const;
   std::string CountersJson() const;
 
   std::string run_;

@@ -5,13 +5,13 @@
 
 namespace loopgrid {
 
-/// What errors, none of them negative, amount to. All zero where there are none.
+/// Statistics of errors, of which none is negative. All are zero if there are no errors.
 struct ErrorSummary {
   std::size_t count = 0;
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< of the population: divided by the count
   double squared_mean = 0.0;        ///< mean of the squares
-  double rms = 0.0;                 ///< root of that
+  double rms = 0.0;                 ///< square root of squared_mean
   double median = 0.0;
   double maximum = 0.0;
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "backend/geometry/se2.h"
+#include "frontend/evaluation/number_table.h"
 
 namespace loopgrid {
 
@@ -14,10 +15,13 @@ struct Relation {
   SE2 T_1_2;        ///< pose at t2 seen from the pose at t1
 };
 
-/// Reads relations as published with Kuemmerle et al., "On measuring the accuracy of SLAM
-/// algorithms", 2009: `t1 t2 x y z roll pitch yaw` a line, metres and radians, `#` beginning a
-/// comment. Strict: throws Error (kInput) `file:line: ...` for any other line, and for a file
-/// without a relation.
+/// Relations as published with Kuemmerle et al., "On measuring the accuracy of SLAM algorithms",
+/// 2009: `t1 t2 x y z roll pitch yaw` a line, metres and radians; what is not in the plane is left
+/// out. Throws Error (kInput) `file:line: ...` for a line with an impossible pose, and for a table
+/// without lines.
+std::vector<Relation> RelationsFrom(const NumberTable& table);
+
+/// Reads such a file. Throws Error (kInput) as ReadNumberTable and RelationsFrom do.
 std::vector<Relation> ReadRelationsFile(const std::string& path);
 
 }  // namespace loopgrid

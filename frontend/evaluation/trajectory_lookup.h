@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// Finds the poses of a trajectory by time, however its clock ran.
+/// Finds the poses of a trajectory by time. Their times may be in any order.
 class TrajectoryLookup {
  public:
   explicit TrajectoryLookup(const Trajectory& trajectory);

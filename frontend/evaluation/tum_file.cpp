@@ -2,17 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "backend/base/atomic_file.h"
-#include "backend/base/line_reader.h"
-#include "frontend/evaluation/number_lines.h"
 #include "frontend/log/observation/plausible_pose.h"
 
 namespace loopgrid {
 namespace {
+
+double Norm(double qx, double qy, double qz, double qw) {
+  return std::hypot(std::hypot(qx, qy), std::hypot(qz, qw));  // does not overflow
+}
 
 /// The rotation about the z axis of a unit quaternion, radians.
 double Yaw(double qx, double qy, double qz, double qw) {
@@ -21,24 +22,29 @@ double Yaw(double qx, double qy, double qz, double qw) {
 
 }  // namespace
 
-Trajectory ReadTumFile(const std::string& path) {
-  constexpr double kUnit = 1e-2;  // how far from 1 a rounded quaternion's norm may be
+bool IsNearUnitQuaternion(double qx, double qy, double qz, double qw) {
+  const double norm = Norm(qx, qy, qz, qw);
+  return norm >= 0.9 && norm <= 1.1;
+}
+
+Trajectory TrajectoryFrom(const NumberTable& table) {
   Trajectory trajectory;
-  LineReader lines(path);
-  std::array<double, 8> fields{};
-  while (NextNumberLine(&lines, fields)) {
-    const auto& [timestamp, x, y, z, qx, qy, qz, qw] = fields;
-    if (!IsPlausiblePose(x, y, 0.0)) throw lines.ErrorHere("the pose is out of any bounds");
-    const double norm = std::hypot(std::hypot(qx, qy), std::hypot(qz, qw));
-    if (std::abs(norm - 1.0) > kUnit) {
-      throw lines.ErrorHere(fmt::format("the quaternion's norm is {:g}, not 1", norm));
+  trajectory.reserve(table.rows.size());
+  for (const NumberTable::Row& row : table.rows) {
+    const auto& [timestamp, x, y, z, qx, qy, qz, qw] = row.numbers;
+    if (!IsPlausiblePose(x, y, 0.0)) throw table.ErrorAt(row, "the pose is out of any bounds");
+    const double norm = Norm(qx, qy, qz, qw);
+    if (!IsNearUnitQuaternion(qx, qy, qz, qw)) {
+      throw table.ErrorAt(row, fmt::format("the quaternion's norm is {:g}, not 1", norm));
     }
     const double yaw = Yaw(qx / norm, qy / norm, qz / norm, qw / norm);
     trajectory.push_back({timestamp, SE2(x, y, yaw)});
   }
-  if (trajectory.empty()) throw Error(ErrorCode::kInput, path + ": holds no pose");
+  if (trajectory.empty()) throw Error(ErrorCode::kInput, table.path + ": holds no pose");
   return trajectory;
 }
+
+Trajectory ReadTumFile(const std::string& path) { return TrajectoryFrom(ReadNumberTable(path)); }
 
 std::string FormatTum(const Trajectory& trajectory) {
   std::string text;

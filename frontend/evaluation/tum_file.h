@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "backend/geometry/se2.h"
+#include "frontend/evaluation/number_table.h"
 
 namespace loopgrid {
 
@@ -16,9 +17,16 @@ struct StampedPose {
 /// A trajectory in file order; its times may run backwards and repeat, as those of logs do.
 using Trajectory = std::vector<StampedPose>;
 
-/// Reads a trajectory in the format of the TUM RGB-D benchmark, `time x y z qx qy qz qw` a line,
-/// seconds and metres, `#` beginning a comment; of rotations the yaw is kept. Strict: throws
-/// Error (kInput) `file:line: ...` for any other line, and for a file without a pose.
+/// Whether the quaternion's norm is 0.9 to 1.1: files have rounded ones.
+bool IsNearUnitQuaternion(double qx, double qy, double qz, double qw);
+
+/// A trajectory in the format of the TUM RGB-D benchmark: `time x y z qx qy qz qw` a line, seconds
+/// and metres. Quaternions are normalised if IsNearUnitQuaternion; of rotations the yaw is kept.
+/// Throws Error (kInput) `file:line: ...` for a line that is not a pose, and for a table without
+/// lines.
+Trajectory TrajectoryFrom(const NumberTable& table);
+
+/// Reads such a file. Throws Error (kInput) as ReadNumberTable and TrajectoryFrom do.
 Trajectory ReadTumFile(const std::string& path);
 
 /// A planar trajectory in that format.

@@ -16,8 +16,8 @@ void CarriedOptions::Validate() const {
 }
 
 void SlamOptions::Validate() const {
-  RequireBetween("node_distance", node_distance, 0.05, 10.0);
-  RequireBetween("node_angle", node_angle, 0.05, 3.0);
+  RequireBetween("node_distance", node_distance, kLeastNodeDistance, kMostNodeDistance);
+  RequireBetween("node_angle", node_angle, kLeastNodeAngle, kMostNodeAngle);
   RequireBetween("tracked_nodes", tracked_nodes, 1, 1000000);
   RequireBetween("unmatched_factor", unmatched_factor, 1.0, 1e6);
   RequireBetween("update_lag", update_lag, 0, 1000000);

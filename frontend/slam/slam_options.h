@@ -29,6 +29,11 @@ struct CarriedOptions {
 /// All options of the algorithm. One set of defaults for all logs; what depends on the sensor is
 /// derived from the log.
 struct SlamOptions {
+  static constexpr double kLeastNodeDistance = 0.05;  ///< metres
+  static constexpr double kMostNodeDistance = 10.0;   ///< metres
+  static constexpr double kLeastNodeAngle = 0.05;     ///< radians
+  static constexpr double kMostNodeAngle = 3.0;       ///< radians
+
   double node_distance = 0.5;     ///< a new node after this much travel, metres
   double node_angle = 0.5;        ///< ... or after this much turning, radians
   int tracked_nodes = 20;         ///< the newest nodes, whose scans tracking matches with

@@ -190,7 +190,7 @@ TEST_F(ProgramTest, FileWithoutPermissionIsAnInputError) {
 TEST_F(ProgramTest, FolderThatCannotBeWrittenIsAnOutputError) {
   ExpectRefusal({"run", log_, "--out", log_}, 4, "room.clf: is not a directory");
   ExpectRefusal({"run", log_, "--out", log_ + "/out"}, 4, "room.clf: is not a directory");
-  ExpectRefusal({"run", log_, "--out", ""}, 4, "the name is empty");
+  ExpectRefusal({"run", log_, "--out", ""}, 2, "--out: the name is empty");
   ExpectRefusal({"run", log_, "--out", "/proc/loopgrid"}, 4, "/proc/loopgrid: ");
   ExpectRefusal({"run", log_, "--out", "/dev/null"}, 4, "/dev/null: is not a directory");
   fs::create_directories(out_ + "/map.png");
@@ -231,18 +231,22 @@ TEST_F(ProgramTest, DiskThatFillsUpLeavesNothingNew) {
 }
 
 TEST_F(ProgramTest, OptionOutOfRangeIsAUsageErrorWithValueAndBound) {
-  ExpectRefusal({"run", log_, "--out", out_, "--resolution", "0"}, 2, "resolution is 0, expected");
-  ExpectRefusal({"run", log_, "--out", out_, "--resolution", "nan"}, 2, "resolution is nan");
-  ExpectRefusal({"run", log_, "--out", out_, "--node-distance", "-1"}, 2, "node_distance is -1");
-  ExpectRefusal({"run", log_, "--out", out_, "--node-angle", "1e9"}, 2, "node_angle is ");
+  ExpectRefusal({"run", log_, "--out", out_, "--resolution", "0"}, 2,
+                "--resolution is 0, expected 0.01 to 1");
+  ExpectRefusal({"run", log_, "--out", out_, "--resolution", "nan"}, 2, "--resolution is nan");
+  ExpectRefusal({"run", log_, "--out", out_, "--node-distance", "-1"}, 2, "--node-distance is -1");
+  ExpectRefusal({"run", log_, "--out", out_, "--node-angle", "1e9"}, 2, "--node-angle is ");
 }
 
 TEST_F(ProgramTest, ArgumentsThatMakeNoSenseAreAUsageError) {
   ExpectRefusal({}, 2, "");
-  ExpectRefusal({"fly"}, 2, "");
+  ExpectRefusal({"fly"}, 2, "there is no command 'fly' (see loopgrid --help)");
+  ExpectRefusal({"optimise"}, 2, "did you mean optimize?");
   ExpectRefusal({"run"}, 2, "LOG");
   ExpectRefusal({"run", log_}, 2, "--out");
   ExpectRefusal({"run", log_, "--out", out_, "--fast"}, 2, "--fast");
+  ExpectRefusal({"run", log_, "--out", out_, "--resolutoin", "1"}, 2,
+                "did you mean --resolution? (see loopgrid run --help)");
   ExpectRefusal({"run", log_, "--out", out_, "--resolution", "fine\ngrained"}, 2, "fine grained");
   ExpectRefusal({"eval", log_}, 2, "REFERENCE");
 }

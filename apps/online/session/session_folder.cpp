@@ -5,17 +5,17 @@
 #include <sys/file.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "apps/output/json_reader.h"
+#include "apps/output/json_writer.h"
 #include "apps/run/run_outputs.h"
+#include "apps/settings/mapping_options.h"
 #include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
 #include "backend/base/line_reader.h"
@@ -25,36 +25,23 @@ namespace loopgrid {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kJournal = "journal.clf";
 constexpr const char* kSession = "session.json";
 
-/// An option that decides the result.
-struct DecidingOption {
-  const char* name;
-  double& (*field)(RunOptions*);
-};
-
-constexpr std::array<DecidingOption, 3> kDeciding = {{
-    {"resolution", [](RunOptions* o) -> double& { return o->resolution; }},
-    {"node_distance", [](RunOptions* o) -> double& { return o->slam.node_distance; }},
-    {"node_angle", [](RunOptions* o) -> double& { return o->slam.node_angle; }},
-}};
-
-std::string FormatSession(OnlineOptions options) {
-  Json json = {{"program", "loopgrid"}, {"version", LOOPGRID_VERSION}};
-  for (const DecidingOption& option : kDeciding) json[option.name] = option.field(&options.run);
-  json["strict"] = options.run.strict;
-  json["continues"] = options.continued;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+std::string FormatSession(const OnlineOptions& options) {
+  JsonWriter json(JsonWriter::Layout::kIndented);
+  json.BeginObject().Field("program", "loopgrid").Field("version", LOOPGRID_VERSION);
+  AddMappingFields(options.run, &json);
+  json.Field("continues", options.continued).EndObject();
+  return json.Take() + '\n';
 }
 
 template <typename Value>
-void Adopt(const char* name, const Value& stored, const OnlineOptions& options, Value* value) {
-  if (options.given.contains(name) && *value != stored) {
+void Adopt(const MappingOption& option, const Value& stored, const OnlineOptions& options, Value* value) {
+  if (options.given.contains(option.key) && *value != stored) {
     throw Error(ErrorCode::kUsage, fmt::format("{} is {}, but the session in {} was begun with {}",
-                                               name, *value, options.resume, stored));
+                                               option.name, *value, options.resume, stored));
   }
   *value = stored;
 }
@@ -146,18 +133,15 @@ void SessionFolder::Begin(const OnlineOptions& options) const {
 }
 
 void SessionFolder::Resume(OnlineOptions* options) const {
-  std::ifstream stream(File(kSession));
-  try {
-    const Json json = Json::parse(stream);
-    for (const DecidingOption& option : kDeciding) {
-      Adopt(option.name, json.at(option.name).get<double>(), *options,
-            &option.field(&options->run));
+  const JsonMembers session(File(kSession));
+  for (const MappingOption& option : MappingOptions()) {
+    if (option.number == nullptr) {
+      Adopt(option, session.Switch(option.key), *options, &option.flag(options->run));
+    } else {
+      Adopt(option, session.Number(option.key), *options, &option.number(options->run));
     }
-    Adopt("strict", json.at("strict").get<bool>(), *options, &options->run.strict);
-    options->continued = json.at("continues").get<std::string>();
-  } catch (const Json::exception&) {
-    throw Error(ErrorCode::kInput, File(kSession) + ": is damaged");
   }
+  options->continued = session.Text("continues");
   options->run.Validate();
 }
 

@@ -3,284 +3,208 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "apps/cli/choices.h"
 #include "backend/base/error.h"
+#include "tests/apps/parse.h"
 
 namespace loopgrid {
 namespace {
 
+using test_support::ParseWords;
+using test_support::UsageErrorOf;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-Command Parse(std::vector<const char*> arguments) {
-  arguments.insert(arguments.begin(), "loopgrid");
-  return ParseCommandLine(static_cast<int>(arguments.size()), arguments.data());
+enum class Colour { kRed, kGreen };
+
+constexpr std::array kColours = {Choice{"red", Colour::kRed}, Choice{"green", Colour::kGreen}};
+
+/// A made-up program with an argument of every type.
+class CommandLineTest : public ::testing::Test {
+ protected:
+  Program program_{
+      .name = "paint",
+      .version = "1.2.3",
+      .summary = "Paints.",
+      .footer = "Below the commands.",
+      .commands = {
+          {.name = "wall",
+           .summary = "Paint a wall",
+           .arguments = {{.name = "WALL", .help = "Which", .target = &wall_, .required = true},
+                         {.name = "--note", .unit = "TEXT", .help = "A note", .target = &note_},
+                         {.name = "--coats",
+                          .unit = "N",
+                          .help = "How many",
+                          .target = &coats_,
+                          .shows_default = true,
+                          .given = [this] { coats_given_ = true; }},
+                         {.name = "--area",
+                          .unit = "M2",
+                          .help = "How large",
+                          .target = &area_,
+                          .shows_default = true},
+                         {.name = "--id", .unit = "ID", .help = "Number", .target = &id_},
+                         {.name = "--limit", .unit = "X", .help = "Most", .target = &limit_},
+                         {.name = "--seed", .unit = "S", .help = "Seed", .target = &seed_},
+                         {.name = "--colour",
+                          .help = "Which",
+                          .target = OneOf(kColours, Colour::kGreen, &colour_)},
+                         {.name = "--dry", .help = "Without paint", .target = &dry_}},
+           .footer = "Below the options."},
+          {.name = "floors",
+           .summary = "Paint floors",
+           .arguments = {{.name = "FLOOR", .help = "Any", .target = &floors_, .required = true},
+                         {.name = "--out",
+                          .unit = "FILE",
+                          .help = "Where",
+                          .target = &out_,
+                          .required = true}}}}};
+
+  std::string wall_;
+  std::string note_;
+  int coats_ = 2;
+  double area_ = 12.5;
+  std::int64_t seed_ = 1;
+  std::optional<std::int64_t> id_;
+  std::optional<double> limit_;
+  Colour colour_ = Colour::kGreen;
+  bool dry_ = false;
+  bool coats_given_ = false;
+  std::vector<std::string> floors_;
+  std::string out_;
+};
+
+TEST_F(CommandLineTest, WhatIsNotGivenKeepsItsDefault) {
+  const Invocation invocation = ParseWords(program_, {"wall", "north"});
+  EXPECT_EQ(invocation.command, &program_.commands[0]);
+  EXPECT_EQ(wall_, "north");
+  EXPECT_EQ(note_, "");
+  EXPECT_EQ(coats_, 2);
+  EXPECT_EQ(area_, 12.5);
+  EXPECT_EQ(seed_, 1);
+  EXPECT_FALSE(id_ || limit_ || dry_ || coats_given_);
+  EXPECT_EQ(colour_, Colour::kGreen);
 }
 
-std::string UsageError(const std::vector<const char*>& arguments) {
-  try {
-    Parse(arguments);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kUsage);
-    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
+TEST_F(CommandLineTest, EveryTypeOfTargetIsSet) {
+  ParseWords(program_, {"wall", "--note", "-x", "--coats=3", "--area", "1e-3", "--id", "-7",
+                        "--limit", "2.5", "--seed", "9000000000", "--colour", "red", "--dry", "w"});
+  EXPECT_EQ(wall_, "w");
+  EXPECT_EQ(note_, "-x");
+  EXPECT_EQ(coats_, 3);
+  EXPECT_TRUE(coats_given_);
+  EXPECT_EQ(area_, 1e-3);
+  EXPECT_EQ(id_, -7);
+  EXPECT_EQ(limit_, 2.5);
+  EXPECT_EQ(seed_, 9000000000);
+  EXPECT_EQ(colour_, Colour::kRed);
+  EXPECT_TRUE(dry_);
 }
 
-TEST(CommandLine, RunTakesALogAndAFolderAndHasDefaultsForAllElse) {
-  const auto run = std::get<RunOptions>(Parse({"run", "a.clf", "--out", "b"}));
-  EXPECT_EQ(run.log, "a.clf");
-  EXPECT_EQ(run.out, "b");
-  EXPECT_EQ(run.resolution, 0.05);
-  EXPECT_EQ(run.slam.node_distance, SlamOptions().node_distance);
-  EXPECT_EQ(run.slam.node_angle, SlamOptions().node_angle);
-  EXPECT_FALSE(run.strict);
-  EXPECT_FALSE(run.quiet);
-  EXPECT_NO_THROW(run.Validate());
+TEST_F(CommandLineTest, SeveralPositionalsComeBeforeOrAfterOptions) {
+  const Invocation invocation = ParseWords(program_, {"floors", "1", "2", "--out", "x"});
+  EXPECT_EQ(invocation.command, &program_.commands[1]);
+  EXPECT_THAT(floors_, ElementsAre("1", "2"));
+  ParseWords(program_, {"floors", "--out", "x", "3"});
+  EXPECT_THAT(floors_, ElementsAre("3"));
 }
 
-TEST(CommandLine, EveryOptionOfRunReachesItsField) {
-  const auto run = std::get<RunOptions>(
-      Parse({"run", "a.clf", "--out=b", "--resolution", "0.1", "--node-distance", "0.7",
-             "--node-angle", "0.3", "--strict", "--quiet"}));
-  EXPECT_EQ(run.resolution, 0.1);
-  EXPECT_EQ(run.slam.node_distance, 0.7);
-  EXPECT_EQ(run.slam.node_angle, 0.3);
-  EXPECT_TRUE(run.strict);
-  EXPECT_TRUE(run.quiet);
+TEST_F(CommandLineTest, AfterTwoDashesNothingIsAnOption) {
+  ParseWords(program_, {"wall", "--", "--dry"});
+  EXPECT_EQ(wall_, "--dry");
+  EXPECT_FALSE(dry_);
 }
 
-TEST(CommandLine, ReplayTakesALogAndEveryOptionReachesItsField) {
-  const auto plain = std::get<ReplayOptions>(Parse({"replay", "a.clf"}));
-  EXPECT_EQ(plain.log, "a.clf");
-  EXPECT_EQ(plain.speed, 1.0);
-  EXPECT_EQ(plain.to, "");
-  EXPECT_EQ(plain.loop, 1);
-  EXPECT_EQ(plain.from_line, 1);
-  const auto replay =
-      std::get<ReplayOptions>(Parse({"replay", "a.clf", "--speed", "10", "--to", "robot:7070",
-                                     "--loop", "0", "--from-line", "20"}));
-  EXPECT_EQ(replay.speed, 10.0);
-  EXPECT_EQ(replay.to, "robot:7070");
-  EXPECT_EQ(replay.loop, 0);
-  EXPECT_EQ(replay.from_line, 20);
+TEST_F(CommandLineTest, HelpNamesUnitsDefaultsAndFooters) {
+  const std::string text = ParseWords(program_, {"--help"}).answer;
+  EXPECT_THAT(text, AllOf(HasSubstr("Paints."), HasSubstr("Paint floors"),
+                          HasSubstr("Below the commands."), Not(HasSubstr("--coats"))));
+  const std::string wall = ParseWords(program_, {"wall", "--help"}).answer;
+  EXPECT_THAT(
+      wall, AllOf(HasSubstr("WALL REQUIRED"), HasSubstr("--coats N=2"), HasSubstr("--area M2=12.5"),
+                  HasSubstr("--id ID "), HasSubstr("{red,green}=green"),
+                  HasSubstr("Below the options."), Not(HasSubstr("Below the commands."))));
+  EXPECT_THAT(ParseWords(program_, {"floors", "-h"}).answer, HasSubstr("Below the commands."));
 }
 
-TEST(CommandLine, OnlineTakesAFolderAndHasDefaultsForAllElse) {
-  const auto online = std::get<OnlineOptions>(Parse({"online", "--out", "a"}));
-  EXPECT_EQ(online.run.out, "a");
-  for (const std::string* option : {&online.follow, &online.listen, &online.connect, &online.resume,
-                                    &online.continued, &online.view, &online.events}) {
-    EXPECT_EQ(*option, "");
-  }
-  EXPECT_FALSE(online.once || online.run.strict || online.run.quiet);
-  EXPECT_EQ(online.interval, 5.0);
-  EXPECT_EQ(online.threads, 2);
-  EXPECT_TRUE(online.given.empty());
-  EXPECT_NO_THROW(online.Validate());
+TEST_F(CommandLineTest, VersionIsOneLine) {
+  const Invocation invocation = ParseWords(program_, {"--version"});
+  EXPECT_EQ(invocation.command, nullptr);
+  EXPECT_EQ(invocation.answer, "paint 1.2.3\n");
 }
 
-TEST(CommandLine, EveryOptionOfOnlineReachesItsField) {
-  const auto online = std::get<OnlineOptions>(
-      Parse({"online",          "--listen", "h:1",          "--once", "--out",        "a",
-             "--continue",      "b",        "--view",       "8080",   "--events",     "-",
-             "--interval",      "2",        "--threads",    "1",      "--resolution", "0.1",
-             "--node-distance", "0.7",      "--node-angle", "0.3",    "--strict",     "--quiet"}));
-  EXPECT_EQ(online.listen, "h:1");
-  EXPECT_TRUE(online.once && online.run.strict && online.run.quiet);
-  EXPECT_EQ(online.continued, "b");
-  EXPECT_EQ(online.view, "8080");
-  EXPECT_EQ(online.events, "-");
-  EXPECT_EQ(online.interval, 2.0);
-  EXPECT_EQ(online.threads, 1);
-  EXPECT_EQ(online.run.resolution, 0.1);
-  EXPECT_EQ(online.run.slam.node_distance, 0.7);
-  EXPECT_EQ(online.run.slam.node_angle, 0.3);
-  EXPECT_THAT(online.given, ::testing::UnorderedElementsAre("resolution", "node_distance",
-                                                            "node_angle", "strict"));
-  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--follow", "f", "--out", "a"})).follow, "f");
-  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--connect", "c:2", "--out", "a"})).connect,
-            "c:2");
-  EXPECT_EQ(std::get<OnlineOptions>(Parse({"online", "--resume", "r"})).resume, "r");
-}
-
-TEST(CommandLine, EvalTakesTwoFiles) {
-  const auto eval = std::get<EvalOptions>(Parse({"eval", "a.tum", "b.relations", "--json"}));
-  EXPECT_EQ(eval.estimate, "a.tum");
-  EXPECT_EQ(eval.reference, "b.relations");
-  EXPECT_TRUE(eval.json);
-}
-
-TEST(CommandLine, OptimizeTakesAGraphAndHasDefaultsForAllElse) {
-  const auto options = std::get<OptimizeOptions>(Parse({"optimize", "a.g2o"}));
-  EXPECT_EQ(options.graph, "a.g2o");
-  for (const std::string* output :
-       {&options.out, &options.picture, &options.trace, &options.marginals}) {
-    EXPECT_EQ(*output, "");
-  }
-  EXPECT_EQ(options.method, Method::kLevenbergMarquardt);
-  EXPECT_EQ(options.parametrization, Parametrization::kManifold);
-  EXPECT_EQ(options.init, InitialGuess::kAuto);
-  EXPECT_EQ(options.loss, LossChoice::kNone);
-  EXPECT_EQ(options.Loss().kind, LossKind::kQuadratic);
-  EXPECT_FALSE(options.relative_to || options.loss_width || options.robust);
-  EXPECT_GE(options.threads, 1);
-  EXPECT_FALSE(options.lenient || options.json || options.quiet);
-  EXPECT_NO_THROW(options.Validate());
-}
-
-TEST(CommandLine, EveryOptionOfOptimizeReachesItsField) {
-  const auto options = std::get<OptimizeOptions>(Parse({"optimize",
-                                                        "a.g2o",
-                                                        "--out",
-                                                        "o",
-                                                        "--picture",
-                                                        "p.png",
-                                                        "--trace",
-                                                        "t",
-                                                        "--marginals",
-                                                        "m",
-                                                        "--relative-to",
-                                                        "-7",
-                                                        "--method",
-                                                        "dogleg",
-                                                        "--parametrization",
-                                                        "exponential",
-                                                        "--init",
-                                                        "chordal",
-                                                        "--loss",
-                                                        "gnc",
-                                                        "--loss-width",
-                                                        "2.5",
-                                                        "--robust",
-                                                        "all",
-                                                        "--max-iterations",
-                                                        "7",
-                                                        "--tolerance",
-                                                        "1e-3",
-                                                        "--threads",
-                                                        "2",
-                                                        "--lenient",
-                                                        "--json",
-                                                        "--quiet"}));
-  EXPECT_EQ(options.out, "o");
-  EXPECT_EQ(options.picture, "p.png");
-  EXPECT_EQ(options.trace, "t");
-  EXPECT_EQ(options.marginals, "m");
-  EXPECT_EQ(options.relative_to, -7);
-  EXPECT_EQ(options.init, InitialGuess::kChordal);
-  EXPECT_EQ(options.robust, RobustSet::kAll);
-  EXPECT_TRUE(options.lenient && options.json && options.quiet);
-  EXPECT_NO_THROW(options.Validate());
-  const OptimizerOptions solver = options.Solver();
-  EXPECT_EQ(solver.method, Method::kDogLeg);
-  EXPECT_EQ(solver.parametrization, Parametrization::kExponential);
-  EXPECT_EQ(solver.loss.kind, LossKind::kGemanMcClure);
-  EXPECT_EQ(solver.loss.width, 2.5);
-  EXPECT_TRUE(solver.graduated);
-  EXPECT_TRUE(solver.trace);
-  EXPECT_EQ(solver.max_iterations, 7);
-  EXPECT_EQ(solver.relative_decrease, 1e-3);
-  EXPECT_EQ(solver.threads, 2);
-}
-
-TEST(CommandLine, EveryWordOfAChoiceIsUnderstood) {
-  const auto parse = [](const char* option, std::string_view word) {
-    const std::string text(word);
-    return std::get<OptimizeOptions>(Parse({"optimize", "a", option, text.c_str()}));
+TEST_F(CommandLineTest, WhatMakesNoSenseIsRefusedAndPointsToTheHelpOfItsCommand) {
+  EXPECT_THAT(UsageErrorOf(program_, {}), HasSubstr("(see paint --help)"));
+  const auto expect = [this](const std::vector<const char*>& words, const char* problem) {
+    EXPECT_THAT(UsageErrorOf(program_, words),
+                AllOf(HasSubstr(problem), HasSubstr("(see paint wall --help)")));
   };
-  for (const auto& [name, value] : kMethods) EXPECT_EQ(parse("--method", name).method, value);
-  for (const auto& [name, value] : kParametrizations) {
-    EXPECT_EQ(parse("--parametrization", name).parametrization, value);
-  }
-  for (const auto& [name, value] : kInitialGuesses) EXPECT_EQ(parse("--init", name).init, value);
-  for (const auto& [name, value] : kLosses) EXPECT_EQ(parse("--loss", name).loss, value);
-  for (const auto& [name, value] : kRobustSets) EXPECT_EQ(parse("--robust", name).robust, value);
-  for (const char* option : {"--method", "--parametrization", "--init", "--loss", "--robust"}) {
-    EXPECT_THAT(UsageError({"optimize", "a", option, "best"}),
-                ::testing::AllOf(HasSubstr(option), HasSubstr("best")));
-  }
+  expect({"wall"}, "WALL is required");
+  expect({"wall", "a", "b"}, "b");
+  expect({"wall", "a", "--coats"}, "--coats");
+  expect({"wall", "a", "--coats", "many"}, "--coats = many");
+  expect({"wall", "a", "--coats", "1.5"}, "--coats = 1.5");
+  expect({"wall", "a", "--coats", "1", "--coats", "2"}, "--coats");
+  expect({"wall", "a", "--colour", "blue"}, "--colour: blue not in {red,green}");
+  expect({"wall", "a", "--note", ""}, "--note: the name is empty");
+  EXPECT_THAT(UsageErrorOf(program_, {"floors", "1"}), HasSubstr("--out is required"));
 }
 
-TEST(CommandLine, EulerAnglesStartAtThePosesInTheFileUnlessToldNotTo) {
-  OptimizeOptions options;
-  EXPECT_EQ(options.Start(), InitialGuess::kAuto);
-  options.parametrization = Parametrization::kEuler;
-  EXPECT_EQ(options.Start(), InitialGuess::kNone);
-  options.init = InitialGuess::kChordal;
-  EXPECT_EQ(options.Start(), InitialGuess::kChordal);
+TEST_F(CommandLineTest, AMistypedCommandNamesTheNearestOne) {
+  EXPECT_EQ(UsageErrorOf(program_, {"floor", "1"}),
+            "there is no command 'floor'; did you mean floors? (see paint --help)");
+  EXPECT_EQ(UsageErrorOf(program_, {"wlal"}),
+            "there is no command 'wlal'; did you mean wall? (see paint --help)");
+  EXPECT_EQ(UsageErrorOf(program_, {"ceiling"}),
+            "there is no command 'ceiling' (see paint --help)");
+  EXPECT_THAT(UsageErrorOf(program_, {"--versoin"}), HasSubstr("did you mean --version?"));
 }
 
-TEST(CommandLine, PlotTakesTracesAndAPicture) {
-  const auto plot =
-      std::get<PlotOptions>(Parse({"plot", "a.csv", "b.csv", "c.csv", "--out", "all.png"}));
-  EXPECT_THAT(plot.traces, ::testing::ElementsAre("a.csv", "b.csv", "c.csv"));
-  EXPECT_EQ(plot.out, "all.png");
-  EXPECT_THAT(std::get<PlotOptions>(Parse({"plot", "--out", "b.png", "a.csv"})).traces,
-              ::testing::ElementsAre("a.csv"));
+TEST_F(CommandLineTest, AMistypedOptionNamesTheNearestOne) {
+  const auto suggestion = [this](const char* option) {
+    return UsageErrorOf(program_, {"wall", "a", option, "3"});
+  };
+  EXPECT_EQ(suggestion("--caots"),
+            "there is no option '--caots'; did you mean --coats? (see paint wall --help)");
+  EXPECT_THAT(suggestion("--caots=3"), HasSubstr("'--caots'; did you mean --coats?"));
+  EXPECT_THAT(suggestion("--color"), HasSubstr("did you mean --colour?"));
+  EXPECT_THAT(suggestion("-coats"), HasSubstr("did you mean --coats?"));
+  EXPECT_THAT(suggestion("--hlep"), HasSubstr("did you mean --help?"));
+  EXPECT_EQ(suggestion("--temperature"),
+            "there is no option '--temperature' (see paint wall --help)");
+  // The option is wrong whatever else is missing.
+  EXPECT_THAT(UsageErrorOf(program_, {"floors", "--uot", "x"}), HasSubstr("did you mean --out?"));
 }
 
-TEST(CommandLine, VersionIsOneLine) {
-  const std::string text = std::get<Answer>(Parse({"--version"})).text;
-  EXPECT_THAT(text, ::testing::MatchesRegex("loopgrid [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+TEST_F(CommandLineTest, TheValueOfAnOptionIsNotTakenForAnOption) {
+  ParseWords(program_, {"wall", "a", "--note", "--caots"});
+  EXPECT_EQ(note_, "--caots");
+  EXPECT_THAT(UsageErrorOf(program_, {"wall", "a", "--dry", "--caots"}),
+              HasSubstr("did you mean --coats?"));
 }
 
-TEST(CommandLine, HelpOfTheProgramNamesItsCommands) {
-  const std::string text = std::get<Answer>(Parse({"--help"})).text;
-  EXPECT_THAT(text, HasSubstr("run "));
-  EXPECT_THAT(text, HasSubstr("eval "));
-  EXPECT_THAT(text, HasSubstr("optimize "));
-  EXPECT_THAT(text, HasSubstr("plot "));
-  EXPECT_THAT(text, HasSubstr("Exit status"));
-}
-
-TEST(CommandLine, HelpOfRunExplainsEveryOptionWithUnitAndDefault) {
-  const std::string text = std::get<Answer>(Parse({"run", "--help"})).text;
-  EXPECT_THAT(text, HasSubstr("LOG"));
-  EXPECT_THAT(text, HasSubstr("--out DIR"));
-  EXPECT_THAT(text, HasSubstr("--resolution METRES=0.05"));
-  EXPECT_THAT(text, HasSubstr("--node-distance METRES=0.5"));
-  EXPECT_THAT(text, HasSubstr("--node-angle RADIANS=0.5"));
-  EXPECT_THAT(text, HasSubstr("--strict"));
-  EXPECT_THAT(text, HasSubstr("--quiet"));
-}
-
-TEST(CommandLine, WhatMakesNoSenseIsAUsageErrorOfOneLine) {
-  UsageError({});
-  UsageError({"walk"});
-  UsageError({"run"});
-  UsageError({"eval", "a.tum"});
-  UsageError({"eval", "a.tum", "b.tum", "c.tum"});
-  EXPECT_THAT(UsageError({"run", "a.clf"}), HasSubstr("--out"));
-  EXPECT_THAT(UsageError({"run", "a.clf", "--out", "b", "--speed", "3"}), HasSubstr("--speed"));
-  EXPECT_THAT(UsageError({"run", "a.clf", "--out", "b", "--resolution", "fine"}),
-              HasSubstr("--resolution"));
-}
-
-TEST(RunOptions, OutOfRangeIsNamedWithValueAndBound) {
-  for (const char* value : {"0", "-1", "0.009", "1.1", "nan", "inf"}) {
-    const auto run =
-        std::get<RunOptions>(Parse({"run", "a.clf", "--out", "b", "--resolution", value}));
+TEST_F(CommandLineTest, ExecuteNamesTheOptionInMessagesOfTheLibrary) {
+  Command command = program_.commands[0];
+  const auto message = [&command](ErrorCode code, const char* text) -> std::string {
+    command.action = [code, text] { throw Error(code, text); };
     try {
-      run.Validate();
-      ADD_FAILURE() << value;
+      Execute(command);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::kUsage);
-      EXPECT_THAT(error.what(), HasSubstr("resolution is " + std::string(value)));
-      EXPECT_THAT(error.what(), HasSubstr("0.01 to 1"));
+      EXPECT_EQ(error.code(), code);
+      return error.what();
     }
-  }
-}
-
-TEST(RunOptions, OptionsOfTheMapperAreCheckedToo) {
-  const auto run =
-      std::get<RunOptions>(Parse({"run", "a.clf", "--out", "b", "--node-distance", "-3"}));
-  EXPECT_THROW(run.Validate(), Error);
+    return "";
+  };
+  EXPECT_EQ(message(ErrorCode::kUsage, "coats is 0, expected 1"), "--coats is 0, expected 1");
+  EXPECT_EQ(message(ErrorCode::kInput, "coats is 0"), "coats is 0");
 }
 
 }  // namespace

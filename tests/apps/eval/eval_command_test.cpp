@@ -1,8 +1,11 @@
 // `loopgrid eval` as its user meets it. The metrics themselves are tested in tests/frontend.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -51,7 +54,8 @@ TEST_F(EvalCommandTest, KnowsRelationsByTheirContent) {
   const ProgramResult text = Eval(relations);
   EXPECT_EQ(text.status, 0);
   EXPECT_THAT(text.errors, IsEmpty());
-  EXPECT_THAT(text.output, AllOf(StartsWith("exact         2 relations"), HasSubstr("0.2500 +-")));
+  EXPECT_THAT(text.output, AllOf(StartsWith("compare       "),
+                                 HasSubstr("\nexact         2 relations"), HasSubstr("0.2500 +-")));
   const json result = json::parse(Eval(relations, {"--json"}).output);
   EXPECT_EQ(result["metric"], "relations");
   EXPECT_EQ(result["exact"]["count"], 2);
@@ -68,7 +72,7 @@ TEST_F(EvalCommandTest, KnowsATrajectoryByItsContentAndAlignsIt) {
       "11 5 6 0 0 0 0.70710678 0.70710678\n"
       "12 5 7 0 0 0 0.70710678 0.70710678\n"
       "20 5 8 0 0 0 0.70710678 0.70710678\n";
-  EXPECT_THAT(Eval(reference).output, StartsWith("compared      3 poses"));
+  EXPECT_THAT(Eval(reference).output, HasSubstr("\ncompared      3 poses"));
   const json result = json::parse(Eval(reference, {"--json"}).output);
   EXPECT_EQ(result["metric"], "trajectory");
   EXPECT_EQ(result["count"], 3);
@@ -76,6 +80,65 @@ TEST_F(EvalCommandTest, KnowsATrajectoryByItsContentAndAlignsIt) {
   EXPECT_NEAR(result["translation_m"]["rms"], 0.0, 1e-6);
   EXPECT_NEAR(result["rotation_deg"]["max"], 0.0, 1e-6);
   EXPECT_NEAR(result["alignment"]["theta"], 0.5 * std::numbers::pi, 1e-6);
+}
+
+TEST_F(EvalCommandTest, TakesCoarselyRoundedQuaternionsForQuaternions) {
+  // Their norm is 0.99, less than a rounding error from 1; they were once taken for relations.
+  const std::string reference =
+      "10 5 5 0 0 0 0.7 0.7\n"
+      "11 5 6 0 0 0 0.7 0.7\n"
+      "12 5 7 0 0 0 0.7 0.7\n";
+  const json result = json::parse(Eval(reference, {"--json"}).output);
+  EXPECT_EQ(result["metric"], "trajectory");
+  EXPECT_NEAR(result["rotation_deg"]["max"], 0.0, 1e-6);
+}
+
+TEST_F(EvalCommandTest, SaysWhatIsComparedWithWhat) {
+  const std::string file = folder_.File("reference");
+  EXPECT_THAT(Eval("10 11 1 0 0 0 0 0\n").output,
+              StartsWith("compare       " + estimate_ + " (3 poses) with the relations " + file +
+                         " (1 relations; known by content)\n"));
+  EXPECT_THAT(Eval("10 0 0 0 0 0 0 1\n").output,
+              StartsWith("compare       " + estimate_ + " (3 poses) with the trajectory " + file +
+                         " (1 poses; known by content)\n"));
+  const json result = json::parse(Eval("10 0 0 0 0 0 0 1\n", {"--json"}).output);
+  EXPECT_EQ(result["known_by"], "content");
+  EXPECT_EQ(result["estimate"], estimate_);
+  EXPECT_EQ(result["reference"], file);
+}
+
+TEST_F(EvalCommandTest, CanBeToldWhatTheReferenceIs) {
+  // A trajectory by its look, but also two relations with a yaw of 1.
+  const std::string both = "10 11 1 0 0 0 0 1\n11 12 1 0 0 0 0 1\n";
+  EXPECT_EQ(json::parse(Eval(both, {"--json"}).output)["metric"], "trajectory");
+  const json relations = json::parse(Eval(both, {"--json", "--relations"}).output);
+  EXPECT_EQ(relations["metric"], "relations");
+  EXPECT_EQ(relations["known_by"], "option");
+  EXPECT_NEAR(relations["exact"]["rotation_deg"]["mean"], 180.0 / std::numbers::pi, 1e-9);
+  const ProgramResult refused = Eval("10 11 1 0 0 0 0 0.2\n", {"--reference"});
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.errors, HasSubstr("reference:1: the quaternion's norm is 0.2, not 1"));
+  EXPECT_EQ(Eval(both, {"--reference", "--relations"}).status, 2);
+}
+
+TEST_F(EvalCommandTest, AReferenceThroughAPipeGivesTheSameAsAFile) {
+  std::string relations;
+  for (int i = 0; i < 1000; ++i) relations += "10 11 1 0 0 0 0 0\n";
+  const std::string file = folder_.Write("file", relations);
+  const json expected = json::parse(RunProgram({"eval", estimate_, file, "--json"}).output);
+  EXPECT_EQ(expected["exact"]["count"], 1000);
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  // All of it fits into the pipe's buffer, so that nobody has to read yet.
+  ASSERT_EQ(write(ends[1], relations.data(), relations.size()), std::ssize(relations));
+  close(ends[1]);
+  const ProgramResult result = RunProgram({"eval", estimate_, "/dev/stdin", "--json"},
+                                          [&ends] { dup2(ends[0], STDIN_FILENO); });
+  close(ends[0]);
+  json found = json::parse(result.output);
+  EXPECT_EQ(found["reference"], "/dev/stdin");
+  found["reference"] = file;
+  EXPECT_EQ(found, expected);
 }
 
 TEST_F(EvalCommandTest, WhatCannotBeComparedIsAnInputError) {

@@ -67,16 +67,16 @@ class OnlineErrorsTest : public ::testing::Test {
 
 TEST_F(OnlineErrorsTest, ArgumentsThatMakeNoSenseAreAUsageError) {
   const std::string out = File("live");
-  ExpectRefusal({}, 2, "out or resume is missing");
-  ExpectRefusal({"--out", out, "--resume", out}, 2, "out and resume");
-  ExpectRefusal({"--resume", out, "--continue", out}, 2, "continue and resume");
+  ExpectRefusal({}, 2, "--out or --resume is missing");
+  ExpectRefusal({"--out", out, "--resume", out}, 2, "--out and --resume");
+  ExpectRefusal({"--resume", out, "--continue", out}, 2, "--continue and --resume");
   ExpectRefusal({"--out", out, "--follow", "a", "--listen", "1"}, 2, "more than one");
-  ExpectRefusal({"--out", out, "--once"}, 2, "once is for listen and connect");
-  ExpectRefusal({"--out", out, "--interval", "nan"}, 2, "interval is nan");
-  ExpectRefusal({"--out", out, "--threads", "0"}, 2, "threads is 0");
-  ExpectRefusal({"--out", out, "--resolution", "0"}, 2, "resolution is 0");
-  ExpectRefusal({"--out", out, "--listen", "nowhere"}, 2, "nowhere");
-  ExpectRefusal({"--out", out, "--view", "1:2:3"}, 2, "1:2:3");
+  ExpectRefusal({"--out", out, "--once"}, 2, "--once is for --listen and --connect");
+  ExpectRefusal({"--out", out, "--interval", "nan"}, 2, "--interval is nan");
+  ExpectRefusal({"--out", out, "--threads", "0"}, 2, "--threads is 0");
+  ExpectRefusal({"--out", out, "--resolution", "0"}, 2, "--resolution is 0");
+  ExpectRefusal({"--out", out, "--listen", "nowhere"}, 2, "--listen: 'nowhere' is not");
+  ExpectRefusal({"--out", out, "--view", "1:2:3"}, 2, "--view: '1:2:3'");
   ExpectRefusal({"--out", ""}, 2, "--out");
 }
 

@@ -333,10 +333,10 @@ TEST_F(OptimizeCommandTest, OptionsThatContradictEachOtherAreUsageErrors) {
   ExpectRefusal({"--out", ""}, "--out: the name is empty");
   ExpectRefusal({"--method", "newton"}, "--method: ");
   ExpectRefusal({"--init", ""}, "--init: ");
-  ExpectRefusal({"--loss", "huber", "--loss-width", "0"}, "width is 0");
-  ExpectRefusal({"--threads", "0"}, "threads is 0, expected 1 to 1024");
-  ExpectRefusal({"--max-iterations", "-1"}, "max_iterations is -1");
-  ExpectRefusal({"--tolerance", "nan"}, "relative_decrease is nan");
+  ExpectRefusal({"--loss", "huber", "--loss-width", "0"}, "--loss-width is 0");
+  ExpectRefusal({"--threads", "0"}, "--threads is 0, expected 1 to 1024");
+  ExpectRefusal({"--max-iterations", "-1"}, "--max-iterations is -1");
+  ExpectRefusal({"--tolerance", "nan"}, "--tolerance is nan");
   WriteFile(graph_, std::string(kSquare) + kLandmarks);
   ExpectRefusal({"--out", folder_.File("out.graph")},
                 "out.graph: the TORO format has no landmarks");

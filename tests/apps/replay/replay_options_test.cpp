@@ -39,7 +39,7 @@ TEST(ReplayOptions, WhatIsOutOfBoundsIsNamed) {
   for (const double speed :
        {-1.0, 1e-7, 1e7, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THAT(Problem([=](ReplayOptions* options) { options->speed = speed; }),
-                HasSubstr("speed is "));
+                HasSubstr("--speed is "));
   }
   EXPECT_THAT(Problem([](ReplayOptions* options) { options->loop = -1; }), HasSubstr("loop is -1"));
   EXPECT_THAT(Problem([](ReplayOptions* options) { options->from_line = 0; }),

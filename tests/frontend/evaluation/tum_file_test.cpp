@@ -65,6 +65,20 @@ TEST(TumFile, KeepsTheYawOfARotationInSpace) {
   }
 }
 
+TEST(TumFile, NormalisesQuaternionsOfNearlyUnitNorm) {
+  for (const double norm : {0.9001, 0.99, 1.0, 1.0999}) {
+    const MemoryFile file(fmt::format("1 2 3 0 0 0 {} {}\n", 0.6 * norm, 0.8 * norm));
+    EXPECT_NEAR(ReadTumFile(file.path()).at(0).pose.theta(), 2.0 * std::asin(0.6), 1e-12) << norm;
+  }
+  const MemoryFile file("1 0 0 0 0 0 0.7 0.7\n");
+  EXPECT_NEAR(ReadTumFile(file.path()).at(0).pose.theta(), 0.5 * std::numbers::pi, 1e-12);
+  for (const char* w : {"0.8999", "1.1001", "-0.5"}) {
+    const MemoryFile far(fmt::format("# pose\n1 0 0 0 0 0 0 {}\n", w));
+    EXPECT_THAT([&] { ReadTumFile(far.path()); },
+                ThrowsMessage<Error>(HasSubstr(far.path() + ":2: the quaternion's norm is ")));
+  }
+}
+
 TEST(TumFile, RefusesMalformedFilesWithTheLine) {
   const struct {
     const char* content;

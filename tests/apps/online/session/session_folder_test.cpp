@@ -76,7 +76,7 @@ TEST_F(SessionFolderTest, ResumedSessionHasTheOptionsThatItWasBegunWith) {
 TEST_F(SessionFolderTest, OptionThatContradictsTheSessionIsAUsageError) {
   BeginSession();
   resume_.given = {"resolution"};
-  ExpectRefusal(resume_, ErrorCode::kUsage, "resolution is 0.05, but the session");
+  ExpectRefusal(resume_, ErrorCode::kUsage, "--resolution is 0.05, but the session");
   resume_.run.resolution = 0.1;
   resume_.given.insert("strict");
   resume_.run.strict = true;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "apps/output/json_writer.h"
+#include "frontend/closing/closure.h"
+
+namespace loopgrid {
+
+// What is told about a closure that was tried. All of it comes from one table of fields, in
+// closure_fields.cpp: the columns of closures.csv and the members of the JSON objects of events and
+// of the page.
+
+/// The names of the columns of closures.csv, separated by commas.
+std::string ClosureCsvHeader();
+
+/// A line of closures.csv, without its line end.
+std::string ClosureCsvLine(const Closure& closure);
+
+/// Adds the members that an event of --events has.
+void AddClosureEventFields(const Closure& closure, JsonWriter* json);
+
+/// Adds the members that the page of --view gets; with fewer digits, since it gets many closures.
+void AddClosurePageFields(const Closure& closure, JsonWriter* json);
+
+}  // namespace loopgrid
