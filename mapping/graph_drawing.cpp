@@ -21,7 +21,6 @@ constexpr Color kSequentialColor{30, 100, 190};
 constexpr Color kClosureColor{225, 75, 35};
 constexpr Color kLandmarkColor{20, 140, 60};
 
-constexpr int kBackdropCells = 1200;
 constexpr double kLandmarkRadius = 4.0;  // pixels
 constexpr double kBorder = 0.008;        // free space around the graph, share of its larger side
 
@@ -218,22 +217,6 @@ void RequireNodesOf(std::span<const GraphEdge> edges, std::size_t node_count) {
 }
 
 }  // namespace
-
-OccupancyGrid RenderBackdrop(std::span<const SE2> poses,
-                             const std::function<MapScan(std::size_t)>& scan_at,
-                             OccupancyGridOptions options) {
-  const OccupancyGrid ruler(options);
-  CellBox box;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    box = box.United(ruler.BoxOf(poses[i], scan_at(i)));
-  }
-  const double longest = static_cast<double>(std::max(box.width(), box.height()));
-  const double coarser = std::max(1.0, longest / kBackdropCells);
-  options.resolution *= coarser;
-  // A large cell with a wall in it is mostly free, but it is the wall that should be seen.
-  options.hit_log_odds = std::min(10.0, coarser * options.hit_log_odds);
-  return RenderMap(poses, scan_at, options);
-}
 
 std::string DrawGraphBeforeAfter(const GraphState& before, const GraphState& after,
                                  std::span<const GraphEdge> edges, Viewpoint viewpoint) {

@@ -1,13 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "backend/geometry/se2.h"
 #include "mapping/occupancy_grid.h"
 
 namespace loopgrid {
@@ -23,13 +20,6 @@ struct GraphEdge {
   int to = 0;
   EdgeKind kind = EdgeKind::kSequential;
 };
-
-/// A grid of the scans that is just fine enough to be drawn behind a graph, whatever the extent:
-/// RenderMap with cells of `options.resolution`, or larger ones where a side of the map would need
-/// more than 1,200 of them.
-OccupancyGrid RenderBackdrop(std::span<const SE2> poses,
-                             const std::function<MapScan(std::size_t)>& scan_at,
-                             OccupancyGridOptions options = {});
 
 /// One state of a graph, map frame, metres; in 2D z is 0.
 struct GraphState {

@@ -13,8 +13,6 @@
 namespace loopgrid {
 namespace {
 
-constexpr std::int64_t kMaxSide = 32767;
-
 std::uint8_t GreyOf(CellState state) {
   switch (state) {
     case CellState::kWall:
@@ -34,11 +32,11 @@ CellBox PicturedBox(const CellBox& seen) { return seen.empty() ? CellBox{0, 0, 1
 
 MapPicture BlankMap(const CellBox& seen) {
   const CellBox box = PicturedBox(seen);
-  if (box.width() > kMaxSide || box.height() > kMaxSide) {
+  if (box.width() > kMaxMapSide || box.height() > kMaxMapSide) {
     throw Error(ErrorCode::kUsage,
                 fmt::format("a map image of {} x {} pixels is more than {} a side; take a coarser "
                             "resolution",
-                            box.width(), box.height(), kMaxSide));
+                            box.width(), box.height(), kMaxMapSide));
   }
   MapPicture picture{.image = {.width = static_cast<int>(box.width()),
                                .height = static_cast<int>(box.height()),
@@ -58,12 +56,13 @@ std::vector<std::uint8_t> DrawCells(const OccupancyGrid& grid, const CellBox& bo
 }
 
 GreyImage DrawMap(const OccupancyGrid& grid) {
-  auto [image, box] = BlankMap(grid.SeenBox());
-  auto row = image.pixels.begin();
+  MapPicture picture = BlankMap(grid.SeenBox());
+  const CellBox& box = picture.box;
+  auto row = picture.image.pixels.begin();
   for (std::int64_t y = box.max_y - 1; y >= box.min_y; --y, row += box.width()) {
     std::ranges::copy(DrawCells(grid, {box.min_x, y, box.max_x, y + 1}), row);
   }
-  return std::move(image);
+  return std::move(picture.image);
 }
 
 std::string EncodePng(const GreyImage& image) {

@@ -15,6 +15,9 @@ inline constexpr std::uint8_t kGreyWall = 0;
 inline constexpr std::uint8_t kGreyUnknown = 205;
 inline constexpr std::uint8_t kGreyFree = 254;
 
+/// No map image has more pixels a side: image files of every program take that many.
+inline constexpr std::int64_t kMaxMapSide = 32767;
+
 /// A grey picture: row-major, the first row is the top.
 struct GreyImage {
   int width = 0;
@@ -22,14 +25,16 @@ struct GreyImage {
   std::vector<std::uint8_t> pixels;
 };
 
-/// A picture of a map, one pixel a cell, y upwards, and the cells that it shows.
+/// A picture of a map, y upwards. A pixel is one cell, or the square of `cells_per_pixel` cells a
+/// side that begins at a multiple of that number.
 struct MapPicture {
   GreyImage image;
-  CellBox box;
+  CellBox box;  ///< what it shows, in pixels: multiply by `cells_per_pixel` for cells
+  int cells_per_pixel = 1;
 };
 
 /// An unknown map that shows `seen`, or the cell at the origin if that is empty. Throws Error
-/// (kUsage) above 32,767 pixels a side (more than image files of every program take).
+/// (kUsage) above kMaxMapSide pixels a side.
 MapPicture BlankMap(const CellBox& seen);
 
 /// The grey values of the cells of `box`, row-major, the first row has the smallest y.

@@ -43,7 +43,7 @@ CellBox WithMargin(const CellBox& old_box, const CellBox& needed) {
 }  // namespace
 
 void OccupancyGridOptions::Validate() const {
-  RequireBetween("resolution", resolution, 0.001, 100.0);
+  RequireBetween("resolution", resolution, 0.001, 1e5);
   RequireBetween("hit_log_odds", hit_log_odds, 0.01, 10.0);
   RequireBetween("miss_log_odds", miss_log_odds, -10.0, -0.01);
   RequireBetween("max_log_odds", max_log_odds, 0.01, 300.0);

@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 namespace loopgrid {
@@ -11,6 +13,9 @@ namespace {
 
 // Wakes the watching thread when its work is over; sent to that thread alone.
 constexpr int kWake = SIGUSR1;
+
+// Programs like timeout(1) send a signal to a process and to its group, so that it comes twice.
+constexpr std::chrono::seconds kSameSignal(1);
 
 bool IsIgnored(int signal) {
   struct sigaction action = {};
@@ -38,18 +43,38 @@ InterruptWatch::~InterruptWatch() {
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
 }
 
+int InterruptWatch::WaitForSignal() {
+  while (true) {
+    int signal = 0;
+    if (sigwait(&watched_, &signal) != 0 || stopping_) return 0;
+    const Clock::time_point now = Clock::now();
+    if (signal == last_signal_ && now - last_arrival_ < kSameSignal) continue;
+    last_signal_ = signal;
+    last_arrival_ = now;
+    return signal;
+  }
+}
+
 void InterruptWatch::Watch() {
-  int signal = 0;
   for (const auto& handle : handlers_) {
-    if (sigwait(&watched_, &signal) != 0 || stopping_) return;
-    if (&handle == &handlers_.back()) {
-      // From here on another one kills. kWake does not: the destructor may be sending it just now.
-      sigdelset(&watched_, kWake);
-      pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
-    }
+    if (WaitForSignal() == 0) return;
+    // Nothing but _exit() ends the program from here on, so that this thread needs no end.
+    if (&handle == &handlers_.back()) std::thread([this] { KillAtNextSignal(); }).detach();
     handle();
   }
-  _exit(128 + signal);
+  _exit(128 + last_signal_);
+}
+
+void InterruptWatch::KillAtNextSignal() {
+  // The destructor may be sending kWake just now, to the other thread. It has nothing to say here.
+  sigset_t signals = watched_;
+  sigdelset(&signals, kWake);
+  int signal = 0;
+  do {
+    if (sigwait(&signals, &signal) != 0) return;
+  } while (signal == last_signal_ && Clock::now() - last_arrival_ < kSameSignal);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  raise(signal);  // which does now what it does to a program without a watch
 }
 
 }  // namespace loopgrid

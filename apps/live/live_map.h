@@ -39,8 +39,8 @@ class LiveMap {
   /// Waits until the picture shows all that was added before, moved nodes included.
   void WaitUntilCurrent();
 
-  /// The whole map so far; for map.yaml see MapYaml(). Throws Error (kUsage) if it is too large for
-  /// an image, see BlankMap().
+  /// The whole map so far, drawn coarser where it would be too large for an image; for map.yaml see
+  /// MapYaml().
   MapPicture Picture() const;
   double resolution() const;  ///< side of a cell, metres
 

@@ -1,12 +1,16 @@
 #include "apps/live/map_tiles.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace loopgrid {
 namespace {
 
 constexpr std::size_t kSide = kTileSide;
+
+// 2^24 cells a pixel: no grid has so many cells a side that this would not do.
+constexpr int kCoarsestPicture = 24;
 
 // Rounds down, also below zero.
 std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {
@@ -33,9 +37,32 @@ TileId ParentOf(const TileId& id) {
           static_cast<int>(FloorDivide(id.y, 2))};
 }
 
+// The box of the squares of 2^level cells a side that `box` touches.
+CellBox Shrunk(const CellBox& box, int level) {
+  return {box.min_x >> level, box.min_y >> level, ((box.max_x - 1) >> level) + 1,
+          ((box.max_y - 1) >> level) + 1};
+}
+
 std::uint8_t Combined(std::uint8_t a, std::uint8_t b) {
   if (a == kGreyUnknown) return b;
   return b == kGreyUnknown ? a : std::min(a, b);  // a wall is darker than free space
+}
+
+// Draws the pixels of `box`, each 2^-shift of a pixel of the picture a side. Those that lie outside
+// of the picture are unknown.
+void DrawTile(std::span<const std::uint8_t> pixels, const CellBox& box, int shift,
+              MapPicture* picture) {
+  auto pixel = pixels.begin();
+  for (std::int64_t y = box.min_y; y < box.max_y; ++y) {
+    const std::int64_t row = picture->box.max_y - 1 - (y >> shift);
+    for (std::int64_t x = box.min_x; x < box.max_x; ++x, ++pixel) {
+      if (*pixel == kGreyUnknown) continue;
+      const std::int64_t column = (x >> shift) - picture->box.min_x;
+      std::uint8_t& target =
+          picture->image.pixels[static_cast<std::size_t>(row * picture->box.width() + column)];
+      target = Combined(target, *pixel);
+    }
+  }
 }
 
 }  // namespace
@@ -175,19 +202,19 @@ CellBox MapTiles::SeenBox() const {
   return seen;
 }
 
-MapPicture MapTiles::Picture() const {
+MapPicture MapTiles::Picture(std::int64_t max_side) const {
   const std::lock_guard lock(mutex_);
-  MapPicture picture = BlankMap(SeenBox());
-  const CellBox& whole = picture.box;
+  const CellBox seen = SeenBox();
+  int level = 0;
+  const auto is_too_large = [max_side](const CellBox& box) {
+    return std::max(box.width(), box.height()) > max_side;
+  };
+  while (level < kCoarsestPicture && is_too_large(Shrunk(seen, level))) ++level;
+  MapPicture picture = BlankMap(Shrunk(seen, level));
+  picture.cells_per_pixel = 1 << level;
   for (const auto& [id, tile] : tiles_) {
-    if (id.level > 0) continue;
-    const CellBox part = Intersection(BoxOf(id), whole);
-    for (std::int64_t y = part.min_y; !part.empty() && y < part.max_y; ++y) {
-      const auto from =
-          tile.pixels->begin() + static_cast<std::ptrdiff_t>(IndexIn(BoxOf(id), part.min_x, y));
-      const auto row = (whole.max_y - 1 - y) * whole.width() + part.min_x - whole.min_x;
-      std::copy(from, from + part.width(), picture.image.pixels.begin() + row);
-    }
+    if (id.level != std::min(level, kTileLevels - 1)) continue;
+    DrawTile(*tile.pixels, BoxOf(id), level - id.level, &picture);
   }
   return picture;
 }

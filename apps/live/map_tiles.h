@@ -2,6 +2,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -53,8 +54,9 @@ class MapTiles {
   /// when asked for. Its version (or a later one) goes to `version` if that is not null.
   std::shared_ptr<const std::string> Png(const TileId& id, std::uint64_t* version = nullptr) const;
 
-  /// The whole map as DrawMap() draws the grid. Throws Error (kUsage) as that does.
-  MapPicture Picture() const;
+  /// The whole map as DrawMap() draws the grid. If that is more than `max_side` pixels a side, a
+  /// pixel is a square of 2, 4, 8, ... cells a side, the smallest with which it fits.
+  MapPicture Picture(std::int64_t max_side = kMaxMapSide) const;
 
  private:
   // Row-major, the first row has the smallest y.

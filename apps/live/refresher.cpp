@@ -1,7 +1,10 @@
 #include "apps/live/refresher.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "backend/base/atomic_file.h"
@@ -45,6 +48,19 @@ std::optional<std::int64_t> Refresher::TakeSaved() {
   return std::exchange(saved_, std::nullopt);
 }
 
+std::optional<std::string> Refresher::TakeNote() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(note_, std::nullopt);
+}
+
+/// Says a thing once, not at every refresh.
+void Refresher::Note(std::string text) {
+  if (text == last_note_) return;
+  last_note_ = text;
+  const std::lock_guard lock(mutex_);
+  note_ = std::move(text);
+}
+
 void Refresher::Serve() {
   std::unique_lock lock(mutex_);
   while (true) {
@@ -68,14 +84,36 @@ void Refresher::Serve() {
   }
 }
 
-void Refresher::Write(const RefreshContent& content) const {
+void Refresher::Write(const RefreshContent& content) {
   WriteOne("trajectory.tum", FormatTum(content.trajectory));
   WriteOne("graph.g2o", FormatGraph(content.graph));
   map_->WaitUntilCurrent();
-  const MapPicture map = map_->Picture();
-  WriteOne("map.png", EncodePng(map.image));
-  WriteOne("map.pgm", EncodePgm(map.image));
-  WriteOne("map.yaml", MapYaml(map.box, map_->resolution(), "map.pgm"));
+  if (std::optional<MapFiles> map = DrawMap()) {
+    WriteOne("map.png", std::move(map->png));
+    WriteOne("map.pgm", std::move(map->pgm));
+    WriteOne("map.yaml", std::move(map->yaml));
+  }
+}
+
+std::optional<Refresher::MapFiles> Refresher::DrawMap() {
+  try {
+    const MapPicture map = map_->Picture();
+    const double resolution = map.cells_per_pixel * map_->resolution();
+    if (map.cells_per_pixel > 1) {
+      Note(
+          fmt::format("the map files have pixels of {:.6g} m: with pixels of {:.6g} m they would "
+                      "be too large",
+                      resolution, map_->resolution()));
+    }
+    return MapFiles{.png = EncodePng(map.image),
+                    .pgm = EncodePgm(map.image),
+                    .yaml = MapYaml(map.box, resolution, "map.pgm")};
+  } catch (const std::bad_alloc&) {
+    Note("the map files were not refreshed: too large for the memory");
+  } catch (const std::exception& error) {
+    Note(fmt::format("the map files were not refreshed: {}", error.what()));
+  }
+  return std::nullopt;
 }
 
 void Refresher::WriteOne(const std::string& name, std::string content) const {

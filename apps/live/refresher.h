@@ -23,7 +23,8 @@ struct RefreshContent {
 };
 
 /// Writes map.png, map.pgm, map.yaml, trajectory.tum and graph.g2o again and again while mapping
-/// goes on, each whole or not at all, on a thread of its own.
+/// goes on, each whole or not at all, on a thread of its own. A map that would be too large for an
+/// image is drawn coarser; one that does not fit into the memory stays as it was refreshed last.
 class Refresher {
  public:
   /// `map` and `published` must live longer; `published` may be null. `interval` in seconds.
@@ -44,11 +45,22 @@ class Refresher {
   /// The number of scans in the files, once after each refresh.
   std::optional<std::int64_t> TakeSaved();
 
+  /// Something to tell about the map files, once: they are drawn coarser, or were left out.
+  std::optional<std::string> TakeNote();
+
  private:
   using Clock = std::chrono::steady_clock;
 
+  struct MapFiles {
+    std::string png;
+    std::string pgm;
+    std::string yaml;
+  };
+
   void Serve();
-  void Write(const RefreshContent& content) const;
+  void Write(const RefreshContent& content);
+  std::optional<MapFiles> DrawMap();
+  void Note(std::string text);
   void WriteOne(const std::string& name, std::string content) const;
 
   std::string folder_;
@@ -60,9 +72,12 @@ class Refresher {
   std::condition_variable wake_;
   std::optional<RefreshContent> content_;  // to be written, or being written
   std::optional<std::int64_t> saved_;
+  std::optional<std::string> note_;  // not taken yet
   std::exception_ptr problem_;
   Clock::time_point next_ = Clock::now();
   bool closing_ = false;
+
+  std::string last_note_;  // of the thread alone
   std::thread thread_;
 };
 

@@ -2,8 +2,10 @@
 
 #include <malloc.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "apps/run/run_outputs.h"
@@ -53,6 +55,7 @@ void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
 
 void LiveOutputs::Tick(OnlineMapper* mapper) {
   if (const auto scans = refresher_->TakeSaved()) events_->Saved(*scans);
+  if (const auto note = refresher_->TakeNote()) events_->Warning(*note);
   if (refresher_->IsDue() && status_.scans > refreshed_scans_) Refresh(*mapper->slam());
   if (Clock::now() >= next_status_) PublishStatus(mapper);
   events_->Flush();
@@ -70,7 +73,11 @@ void LiveOutputs::Finish(const Slam& slam, const std::string& folder) {
   view_->Add(result);
   map_.WaitUntilCurrent();
   for (const char* name : {"map.png", "map.pgm", "map.yaml", "trajectory.tum", "graph.g2o"}) {
-    published_.Put(name, std::make_shared<const std::string>(ReadWholeFile(folder + "/" + name)));
+    const std::string path = folder + "/" + name;
+    std::error_code ignored;
+    const bool exists = std::filesystem::exists(path, ignored);  // a map may have been left out
+    published_.Put(name,
+                   exists ? std::make_shared<const std::string>(ReadWholeFile(path)) : nullptr);
   }
   view_->Finish();
 }
@@ -80,6 +87,12 @@ void LiveOutputs::Refresh(const Slam& slam) {
   refresher_->Refresh({.trajectory = StampPoses(slam, slam.ScanPoses()), .graph = slam.graph()});
 }
 
+void LiveOutputs::WarnOfScansLeftOut() {
+  if (has_warned_ || map_.counters().left_out == 0) return;
+  has_warned_ = true;
+  events_->Warning("the live map has no room for some scans: too far out for cells of this size");
+}
+
 void LiveOutputs::PublishStatus(OnlineMapper* mapper) {
   next_status_ = Clock::now() + kBetweenStatuses;
   SourceCounters counters = source_->counters();
@@ -87,6 +100,7 @@ void LiveOutputs::PublishStatus(OnlineMapper* mapper) {
     events_->Warning(source_->name() + ": " + counters.last_problem);
   }
   status_.counters = std::move(counters);
+  WarnOfScansLeftOut();
   status_.queue = queue_->counters();
   status_.log = mapper->log();
   status_.constraints = std::ssize(mapper->slam()->graph().constraints);

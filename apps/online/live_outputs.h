@@ -46,6 +46,7 @@ class LiveOutputs {
 
   void Refresh(const Slam& slam);
   void PublishStatus(OnlineMapper* mapper);
+  void WarnOfScansLeftOut();
 
   const LineSource* source_;
   const LineQueue* queue_;
@@ -56,6 +57,7 @@ class LiveOutputs {
   std::unique_ptr<Refresher> refresher_;
   OnlineStatus status_;
   std::int64_t refreshed_scans_ = 0;
+  bool has_warned_ = false;  // of scans that the live map has no room for
   Clock::time_point next_status_ = Clock::now();
 };
 

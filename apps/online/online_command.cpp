@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "apps/cli/interrupt_watch.h"
 #include "apps/cli/progress_bar.h"
@@ -22,11 +23,14 @@
 #include "apps/online/source/listen_source.h"
 #include "apps/online/source/pipe_source.h"
 #include "apps/output/output_directory.h"
+#include "apps/output/same_file.h"
+#include "apps/output/session_names.h"
 #include "apps/output/standard_output.h"
 #include "apps/run/finish_run.h"
 #include "apps/run/report.h"
 #include "apps/run/run_outputs.h"
 #include "backend/base/atomic_file.h"
+#include "backend/base/error.h"
 #include "backend/base/stopwatch.h"
 
 namespace loopgrid {
@@ -76,6 +80,25 @@ void Introduce(const OnlineOptions& options, const LineSource& source, const Vie
   if (view != nullptr && !options.run.quiet) Note("the page is at " + page);
   events->Start(options, source.name(), page);
   events->Flush();
+}
+
+/// The events may not be written over what the session reads or keeps. Throws Error (kUsage).
+void RequireOwnPlaceForEvents(const OnlineOptions& options) {
+  std::vector<std::string> taken = RunOutputNames();
+  taken.insert(taken.end(), {kJournalName, kSessionName});
+  for (const std::string& name : taken) {
+    const std::string path = options.run.out + "/" + name;
+    if (options.events == "-" || !IsSameFile(options.events, path)) continue;
+    throw Error(ErrorCode::kUsage,
+                "--events " + options.events + ": is a file of the session; take another name");
+  }
+  RequireOtherThanInput("--events", options.events, options.follow);
+}
+
+/// A session that followed its own journal would never end.
+void RequireOtherThanJournal(const OnlineOptions& options) {
+  if (!IsSameFile(options.follow, options.run.out + "/" + kJournalName)) return;
+  throw Error(ErrorCode::kUsage, "--follow " + options.follow + ": is the session's own journal");
 }
 
 /// Runs a source on a thread of its own.
@@ -165,6 +188,8 @@ void OnlineCommand(OnlineOptions options) {
   mallopt(M_ARENA_MAX, 2);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   CompleteOptions(&options);
+  RequireOwnPlaceForEvents(options);
+  RequireOtherThanJournal(options);
   const std::unique_ptr<LineSource> source = OpenSource(options);
   OutputDirectory outputs(options.run.out, RunOutputNames());
   std::atomic<bool> stopped = false;

@@ -18,6 +18,7 @@
 #include "apps/output/covariance_csv.h"
 #include "apps/output/output_files.h"
 #include "apps/output/peak_memory.h"
+#include "apps/output/same_file.h"
 #include "apps/output/standard_output.h"
 #include "apps/output/trace_csv.h"
 #include "backend/base/error.h"
@@ -41,6 +42,13 @@ std::vector<std::string> WantedOutputs(const OptimizeOptions& options) {
     if (!path->empty()) paths.push_back(*path);
   }
   return paths;
+}
+
+void RequireGraphToStay(const OptimizeOptions& options) {
+  RequireOtherThanInput("--out", options.out, options.graph);
+  RequireOtherThanInput("--picture", options.picture, options.graph);
+  RequireOtherThanInput("--trace", options.trace, options.graph);
+  RequireOtherThanInput("--marginals", options.marginals, options.graph);
 }
 
 /// One optimisation from file to files.
@@ -264,6 +272,7 @@ void Run(const OptimizeOptions& options, GraphFile<Pose> file, OutputFiles* outp
 void OptimizeCommand(const OptimizeOptions& options) {
   const Stopwatch total;
   options.Validate();
+  RequireGraphToStay(options);
   OutputFiles outputs(WantedOutputs(options));
   // Made before the threads of the optimiser, and before any file is opened: see InterruptWatch.
   const InterruptWatch watch([&outputs] { outputs.Discard(); });

@@ -75,7 +75,7 @@ void OptimizeOptions::Validate() const {
           "--robust without --loss: there is no loss to apply");
   Require(!marginals.empty() || !relative_to.has_value(),
           "--relative-to without --marginals: no covariances are asked for");
-  RequirePngName(picture);
+  RequirePngName("--picture", picture);
   Solver().Validate();
 }
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
+#include "apps/output/kept_file.h"
+#include "apps/output/session_names.h"
 #include "backend/base/atomic_file.h"
 #include "backend/base/error.h"
 
@@ -14,6 +17,8 @@ namespace loopgrid {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kStagingPrefix = ".loopgrid-unfinished-";
 
 [[noreturn]] void Fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorCode::kOutput, fmt::format("{}: {}", path.string(), what));
@@ -33,8 +38,9 @@ OutputDirectory::~OutputDirectory() { Discard(); }
 void OutputDirectory::Prepare() {
   const std::lock_guard lock(mutex_);
   CreateDirectories();
+  if (lock_.Acquire(directory_)) RemoveLeftovers();
   CheckPlaces();
-  std::string pattern = (directory_ / ".loopgrid-unfinished-XXXXXX").string();
+  std::string pattern = (directory_ / kStagingPrefix).string() + "XXXXXX";
   if (mkdtemp(pattern.data()) == nullptr) {
     Fail(directory_, std::error_code(errno, std::generic_category()));
   }
@@ -52,6 +58,24 @@ void OutputDirectory::CreateDirectories() {
     if (!fs::create_directory(path, error)) Fail(path, error);
     created_.push_back(path);
   }
+}
+
+/// Nobody else is at work in the folder, so that what is unfinished will never be finished.
+void OutputDirectory::RemoveLeftovers() const {
+  std::vector<std::string> ours = names_;
+  ours.insert(ours.end(), {kJournalName, kSessionName});
+  const auto is_leftover = [&ours](const std::string& name) {
+    return name.starts_with(kStagingPrefix) ||
+           std::any_of(ours.begin(), ours.end(), [&name](const std::string& file) {
+             return name.starts_with("." + file + ".tmp-");
+           });
+  };
+  std::error_code ignored;
+  std::vector<fs::path> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory_, ignored)) {
+    if (is_leftover(entry.path().filename())) leftovers.push_back(entry.path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove_all(leftover, ignored);
 }
 
 void OutputDirectory::CheckPlaces() const {
@@ -79,19 +103,39 @@ void OutputDirectory::Write(const std::string& name, std::string_view content) {
   Write(name, [content](const std::string& path) { WriteFileAtomically(path, content); });
 }
 
+void OutputDirectory::LeaveOut(const std::string& name) { left_out_.insert(name); }
+
 void OutputDirectory::Commit() {
   const std::lock_guard lock(mutex_);
+  std::error_code error;
   for (const std::string& name : names_) {
-    if (!fs::is_regular_file(staging_ / name)) Fail(directory_ / name, "was not written");
+    if (left_out_.contains(name) || fs::is_regular_file(staging_ / name, error)) continue;
+    Fail(directory_ / name, "was not written");
   }
-  for (const std::string& name : names_) {
-    std::error_code error;
-    fs::rename(staging_ / name, directory_ / name, error);
-    if (error) Fail(directory_ / name, error);
+  const fs::path old = staging_ / "old";
+  if (!fs::create_directory(old, error)) Fail(directory_, error);
+  std::vector<KeptFile> kept;
+  try {
+    for (const std::string& name : names_) {
+      kept.emplace_back(directory_ / name, old / name);
+      MoveIntoPlace(name, directory_ / name);
+    }
+  } catch (...) {
+    for (auto file = kept.rbegin(); file != kept.rend(); ++file) file->PutBack();
+    throw;
   }
-  std::error_code ignored;
-  fs::remove(staging_, ignored);
+  fs::remove_all(staging_, error);
   done_ = true;
+}
+
+void OutputDirectory::MoveIntoPlace(const std::string& name, const fs::path& place) {
+  std::error_code error;
+  if (left_out_.contains(name)) {
+    fs::remove(place, error);
+  } else {
+    fs::rename(staging_ / name, place, error);
+  }
+  if (error) Fail(place, error);
 }
 
 void OutputDirectory::Discard() noexcept {

@@ -1,5 +1,7 @@
 #include "apps/output/output_files.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -7,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "apps/output/kept_file.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -21,6 +24,22 @@ void RequireDifferent(const std::vector<std::string>& paths) {
     if (places.insert(std::filesystem::absolute(place, error)).second) continue;
     throw Error(ErrorCode::kUsage, path + ": two different outputs would go to this file");
   }
+}
+
+/// False for devices and pipes, which are written directly.
+bool IsReplaced(const std::string& path) {
+  std::error_code ignored;
+  return !std::filesystem::is_other(path, ignored);
+}
+
+/// Keeps what the path means, links followed.
+KeptFile Keep(const std::string& path) {
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::canonical(path, error);
+  if (error) place = path;
+  std::filesystem::path second_name = place.parent_path() / ".";
+  second_name += place.filename().string() + ".old-" + std::to_string(getpid());
+  return {place, second_name};
 }
 
 }  // namespace
@@ -47,7 +66,17 @@ void OutputFiles::Write(const std::string& path, std::string_view content) {
 void OutputFiles::Commit() {
   const std::lock_guard lock(mutex_);
   for (const auto& file : files_) file->Finish();
-  for (const auto& file : files_) file->Commit();
+  std::vector<KeptFile> kept;
+  try {
+    for (const auto& file : files_) {
+      if (IsReplaced(file->path())) kept.push_back(Keep(file->path()));
+      file->Commit();
+    }
+  } catch (...) {
+    for (auto file = kept.rbegin(); file != kept.rend(); ++file) file->PutBack();
+    throw;
+  }
+  for (KeptFile& file : kept) file.Forget();
 }
 
 void OutputFiles::Discard() noexcept {

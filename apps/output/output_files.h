@@ -30,7 +30,7 @@ class OutputFiles {
   void Write(const std::string& path, std::string_view content);
 
   /// Gives all files their names. Throws Error (kOutput) if one cannot be written in full, and then
-  /// there is none.
+  /// there is none, and what stood in their places is there again.
   void Commit();
 
   /// Removes what is not committed. Any thread may call it, also during Open() or Commit(), which

@@ -6,10 +6,11 @@
 
 namespace loopgrid {
 
-void RequirePngName(const std::string& path) {
+void RequirePngName(const std::string& option, const std::string& path) {
   const std::string kind = std::filesystem::path(path).extension().string();
   if (kind.empty() || kind == ".png" || kind == ".PNG") return;
-  throw Error(ErrorCode::kUsage, path + ": pictures are PNG, expected a name that ends in .png");
+  throw Error(ErrorCode::kUsage,
+              option + " " + path + ": pictures are PNG, expected a name that ends in .png");
 }
 
 }  // namespace loopgrid

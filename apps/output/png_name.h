@@ -4,7 +4,8 @@
 
 namespace loopgrid {
 
-/// Throws Error (kUsage) if a picture's name promises something else than PNG.
-void RequirePngName(const std::string& path);
+/// Throws Error (kUsage) if the name of a picture, given with `option`, promises something else
+/// than PNG.
+void RequirePngName(const std::string& option, const std::string& path);
 
 }  // namespace loopgrid

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/output/png_name.h"
+#include "apps/output/same_file.h"
 #include "apps/output/trace_csv.h"
 #include "backend/base/atomic_file.h"
 #include "mapping/curve_plot.h"
@@ -38,7 +39,10 @@ Curve ReadCurve(const std::string& path, const std::vector<std::string>& paths) 
 }  // namespace
 
 void PlotCommand(const PlotOptions& options) {
-  RequirePngName(options.out);
+  RequirePngName("--out", options.out);
+  for (const std::string& path : options.traces) {
+    RequireOtherThanInput("--out", options.out, path);
+  }
   std::vector<Curve> curves;
   for (const std::string& path : options.traces) curves.push_back(ReadCurve(path, options.traces));
   WriteFileAtomically(options.out, DrawCurves(curves, "iteration", "F(x)"));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include "apps/output/peak_memory.h"
 #include "apps/run/run_outputs.h"
 #include "backend/base/error.h"
@@ -43,6 +45,9 @@ void FinishRun(const Stopwatch& stopwatch, Slam* slam, OutputDirectory* outputs,
   outputs->Write("report.json", FormatReportJson(*report));
   outputs->Commit();
   bar->Clear();
+  for (const std::string& note : report->notes) {
+    std::fprintf(stderr, "loopgrid: note: %s\n", note.c_str());
+  }
 }
 
 }  // namespace loopgrid

@@ -54,7 +54,7 @@ void AddMap(const RunReport& report, JsonWriter* json) {
   json->Key("map").BeginObject();
   json->Field("width", report.map_width)
       .Field("height", report.map_height)
-      .Field("resolution", report.options.resolution);
+      .Field("resolution", report.map_resolution);
   json->EndObject();
 }
 
@@ -103,13 +103,14 @@ std::string FormatReportJson(const RunReport& report) {
   json.Field("before", report.slam.error_before).Field("after", report.slam.error_after);
   json.EndObject();
   AddMap(report, &json);
+  json.Field("notes", report.notes);
   AddTimings(report, &json);
   json.EndObject();
   return json.Take() + '\n';
 }
 
 std::string FormatSummary(const RunReport& report) {
-  const double cell = report.options.resolution;
+  const double cell = report.map_resolution;
   std::string text;
   const auto add_line = [&text]<typename... Args>(fmt::format_string<Args...> format,
                                                   Args&&... args) {
@@ -122,8 +123,10 @@ std::string FormatSummary(const RunReport& report) {
   add_line("closures   {} made of {} tried", CountAccepted(report), CountTried(report));
   add_line("error      {:.6g} before, {:.6g} after", report.slam.error_before,
            report.slam.error_after);
-  add_line("map        {} x {} cells of {} m ({:.1f} m x {:.1f} m)", report.map_width,
-           report.map_height, cell, report.map_width * cell, report.map_height * cell);
+  if (report.map_width > 0) {
+    add_line("map        {} x {} cells of {:.6g} m ({:.1f} m x {:.1f} m)", report.map_width,
+             report.map_height, cell, report.map_width * cell, report.map_height * cell);
+  }
   add_line("time       {:.2f} s for {:.0f} s of data ({:.0f} x real time), {:.0f} MB at most",
            report.total_seconds, report.data_seconds, RealTimeFactor(report),
            report.peak_memory_mb);

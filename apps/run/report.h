@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "apps/settings/run_options.h"
 #include "frontend/log/observation/log_reader.h"
@@ -18,14 +19,16 @@ struct RunReport {
   int nodes = 0;
   int constraints = 0;
   std::map<std::string, std::int64_t> closures;  ///< how many tried came to which outcome
-  int map_width = 0;                             ///< cells
+  int map_width = 0;                             ///< cells; 0 if there is no map
   int map_height = 0;                            ///< cells
+  double map_resolution = 0.0;                   ///< side of a cell, metres
   double data_seconds = 0.0;                     ///< how long the recording took
   double reading_seconds = 0.0;                  ///< of the log
   double drawing_seconds = 0.0;                  ///< map and drawings
   double writing_seconds = 0.0;                  ///< the other files
   double total_seconds = 0.0;                    ///< wall time of the whole run
   double peak_memory_mb = 0.0;
+  std::vector<std::string> notes;  ///< what is missing in the pictures, and why
 };
 
 /// Seconds of recording behind a row of time stamps that may run backwards and jump: steps of over

@@ -7,6 +7,8 @@
 #include "apps/cli/interrupt_watch.h"
 #include "apps/cli/progress_bar.h"
 #include "apps/output/output_directory.h"
+#include "apps/output/same_file.h"
+#include "apps/output/session_names.h"
 #include "apps/output/standard_output.h"
 #include "apps/run/finish_run.h"
 #include "apps/run/report.h"
@@ -24,6 +26,19 @@ void RequireFile(const std::string& log) {
   std::error_code ignored;
   if (!std::filesystem::is_other(log, ignored)) return;
   throw Error(ErrorCode::kInput, log + ": is a device or a pipe; a log has to be a file");
+}
+
+/// Neither a session of `loopgrid online` nor the log itself may be in the place of the files.
+void RequireFreePlaces(const RunOptions& options) {
+  std::error_code ignored;
+  for (const char* name : {kSessionName, kJournalName}) {
+    if (!std::filesystem::exists(options.out + "/" + name, ignored)) continue;
+    throw Error(ErrorCode::kOutput, options.out + ": holds a session of loopgrid online (" + name +
+                                        "); choose another folder");
+  }
+  for (const std::string& name : RunOutputNames()) {
+    RequireOtherThanInput("--out", options.out + "/" + name, options.log);
+  }
 }
 
 /// Feeds the whole log to `slam`.
@@ -57,6 +72,7 @@ void RunCommand(const RunOptions& options) {
 
   // Found out now, not after a long run. The watch comes in between, so that there is no moment
   // at which an interrupt would leave something behind.
+  RequireFreePlaces(options);
   OutputDirectory outputs(options.out, RunOutputNames());
   const InterruptWatch watch([&outputs] { outputs.Discard(); });
   outputs.Prepare();

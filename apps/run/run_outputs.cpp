@@ -1,13 +1,21 @@
 #include "apps/run/run_outputs.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <exception>
 #include <functional>
+#include <iterator>
+#include <new>
+#include <optional>
 
 #include "apps/output/closures_csv.h"
 #include "backend/base/stopwatch.h"
 #include "backend/files/graph_file.h"
 #include "frontend/log/corrected_log.h"
+#include "mapping/fitted_map.h"
 #include "mapping/graph_drawing.h"
 #include "mapping/map_files.h"
 #include "mapping/occupancy_grid.h"
@@ -63,32 +71,103 @@ std::vector<GraphEdge> EdgesOf(const PoseGraph<SE2>& graph) {
   return edges;
 }
 
-void WriteMap(const Slam& slam, const std::vector<SE2>& poses, double resolution,
-              OutputDirectory* outputs, RunReport* report) {
-  OccupancyGridOptions options;
-  options.resolution = resolution;
-  const OccupancyGrid grid = RenderMap(poses, ScansOf(slam), options);
-  const GreyImage image = DrawMap(grid);
-  outputs->Write("map.png", EncodePng(image));
-  outputs->Write("map.pgm", EncodePgm(image));
-  outputs->Write("map.yaml", MapYaml(grid, "map.pgm"));
-  report->map_width = image.width;
-  report->map_height = image.height;
+/// What there is to say about a map that was to have cells of `resolution` metres.
+std::vector<std::string> NotesAbout(const FittedMap& map, double resolution) {
+  std::vector<std::string> notes;
+  if (map.grid.resolution() > resolution) {
+    notes.push_back(
+        fmt::format("the map has cells of {:.6g} m: with cells of {:.6g} m it would be "
+                    "too large",
+                    map.grid.resolution(), resolution));
+  }
+  if (!map.left_out.empty()) {
+    notes.push_back(fmt::format(
+        "the map is without {} {} too far from the others for one map, the "
+        "first: scan {}",
+        map.left_out.size(), map.left_out.size() == 1 ? "scan that is" : "scans that are",
+        map.left_out.front() + 1));
+  }
+  return notes;
 }
 
-void WriteDrawings(const Slam& slam, const std::vector<SE2>& poses, OutputDirectory* outputs) {
-  const std::vector<SE2> odometry = OdometryPoses(slam, poses);
-  const std::vector<SE2> nodes_before = NodesAmong(slam, odometry);
-  const std::vector<SE2>& nodes_after = slam.graph().poses;
+/// The map as files.
+struct MapOutputs {
+  std::string png;
+  std::string pgm;
+  std::string yaml;
+};
+
+MapOutputs DrawMapOutputs(const Slam& slam, const std::vector<SE2>& poses, RunReport* report) {
+  OccupancyGridOptions options;
+  options.resolution = report->options.resolution;
+  const FittedMap map = RenderFittedMap(poses, ScansOf(slam), options);
+  const GreyImage image = DrawMap(map.grid);
+  MapOutputs outputs = {
+      .png = EncodePng(image), .pgm = EncodePgm(image), .yaml = MapYaml(map.grid, "map.pgm")};
+  report->map_width = image.width;
+  report->map_height = image.height;
+  report->map_resolution = map.grid.resolution();
+  std::ranges::move(NotesAbout(map, options.resolution), std::back_inserter(report->notes));
+  return outputs;
+}
+
+std::string DrawGraphOutput(const Slam& slam, const std::vector<SE2>& odometry,
+                            const OccupancyGrid& map) {
   const OccupancyGrid map_before = RenderBackdrop(odometry, ScansOf(slam));
-  const OccupancyGrid map_after = RenderBackdrop(poses, ScansOf(slam));
-  const GraphState before = {
-      .title = "before: odometry", .nodes = PositionsOf(nodes_before), .backdrop = &map_before};
+  const GraphState before = {.title = "before: odometry",
+                             .nodes = PositionsOf(NodesAmong(slam, odometry)),
+                             .backdrop = &map_before};
   const GraphState after = {
-      .title = "after optimisation", .nodes = PositionsOf(nodes_after), .backdrop = &map_after};
-  outputs->Write("graph.png", DrawGraphBeforeAfter(before, after, EdgesOf(slam.graph())));
-  outputs->Write("uncertainty.png",
-                 DrawUncertainty(nodes_after, slam.NodeCovariances(), &map_after));
+      .title = "after optimisation", .nodes = PositionsOf(slam.graph().poses), .backdrop = &map};
+  return DrawGraphBeforeAfter(before, after, EdgesOf(slam.graph()));
+}
+
+/// Calls `draw`. If it fails, whatever the reason (a picture that does not fit into the memory,
+/// say), a note says that `what` is left out: no picture is worth the trajectory and the graph.
+template <typename Draw>
+auto DrawOrLeaveOut(const char* what, const Draw& draw, RunReport* report)
+    -> std::optional<decltype(draw())> {
+  try {
+    return draw();
+  } catch (const std::bad_alloc&) {
+    report->notes.push_back(fmt::format("{} left out: too large for the memory", what));
+  } catch (const std::exception& error) {
+    report->notes.push_back(fmt::format("{} left out: {}", what, error.what()));
+  }
+  return std::nullopt;
+}
+
+/// `content` is null if the file is left out.
+void WriteOrLeaveOut(const std::string& name, const std::string* content,
+                     OutputDirectory* outputs) {
+  if (content == nullptr) {
+    outputs->LeaveOut(name);
+  } else {
+    outputs->Write(name, *content);
+  }
+}
+
+void WriteMap(const Slam& slam, const std::vector<SE2>& poses, OutputDirectory* outputs,
+              RunReport* report) {
+  const auto map = DrawOrLeaveOut(
+      "map.png, map.pgm and map.yaml are", [&] { return DrawMapOutputs(slam, poses, report); },
+      report);
+  WriteOrLeaveOut("map.png", map ? &map->png : nullptr, outputs);
+  WriteOrLeaveOut("map.pgm", map ? &map->pgm : nullptr, outputs);
+  WriteOrLeaveOut("map.yaml", map ? &map->yaml : nullptr, outputs);
+}
+
+void WriteDrawings(const Slam& slam, const std::vector<SE2>& poses, OutputDirectory* outputs,
+                   RunReport* report) {
+  const OccupancyGrid map = RenderBackdrop(poses, ScansOf(slam));
+  const auto graph = DrawOrLeaveOut(
+      "graph.png is", [&] { return DrawGraphOutput(slam, OdometryPoses(slam, poses), map); },
+      report);
+  WriteOrLeaveOut("graph.png", graph ? &*graph : nullptr, outputs);
+  const auto uncertainty = DrawOrLeaveOut(
+      "uncertainty.png is",
+      [&] { return DrawUncertainty(slam.graph().poses, slam.NodeCovariances(), &map); }, report);
+  WriteOrLeaveOut("uncertainty.png", uncertainty ? &*uncertainty : nullptr, outputs);
 }
 
 std::vector<CorrectedScan> CorrectScans(const Slam& slam, const std::vector<SE2>& poses) {
@@ -129,8 +208,8 @@ void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirector
                      RunReport* report) {
   const std::vector<SE2> poses = slam.ScanPoses();
   const Stopwatch drawing;
-  WriteMap(slam, poses, options.resolution, outputs, report);
-  WriteDrawings(slam, poses, outputs);
+  WriteMap(slam, poses, outputs, report);
+  WriteDrawings(slam, poses, outputs, report);
   report->drawing_seconds = drawing.seconds();
   const Stopwatch writing;
   WriteRecords(options.log, slam, poses, outputs);

@@ -18,7 +18,8 @@ std::vector<std::string> RunOutputNames();
 Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses);
 
 /// Writes the files, all but report.json, and notes in `report` what there is to tell about them.
-/// Throws Error.
+/// A picture or a map that is too large to be drawn is drawn coarser or left out, with a note in
+/// the report. Throws Error.
 void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
                      RunReport* report);
 

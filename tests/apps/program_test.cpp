@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <grp.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/apps/online/wait_until.h"
 #include "tests/apps/program.h"
 #include "tests/apps/refusal.h"
 #include "tests/apps/small_log.h"
@@ -29,6 +31,7 @@ using test_support::ProgramResult;
 using test_support::ReadFile;
 using test_support::RunProgram;
 using test_support::SmallLog;
+using test_support::StrayScan;
 using test_support::TemporaryDirectory;
 using test_support::WriteFile;
 using ::testing::AllOf;
@@ -163,6 +166,21 @@ TEST_F(ProgramTest, BadLinesAreCountedAndTheMapIsStillMade) {
   EXPECT_EQ(FilesIn(out_), kOutputs);
 }
 
+TEST_F(ProgramTest, OneScanThreeHundredKilometresOffCostsNoFile) {
+  WriteFile(log_, SmallLog(30) + StrayScan() + SmallLog(30));
+  const ProgramResult result = Run(log_, out_);
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.errors, HasSubstr("loopgrid: note: the map is without 1 scan"));
+  EXPECT_EQ(FilesIn(out_), kOutputs);
+  const json report = json::parse(ReadFile(out_ + "/report.json"));
+  EXPECT_EQ(report["scans"], 61);
+  ASSERT_EQ(report["notes"].size(), 1u);
+  EXPECT_THAT(report["notes"][0], HasSubstr("scan 31"));
+  // The map shows the room, 8 m by 6 m, and not much else.
+  EXPECT_EQ(report["map"]["resolution"], 0.05);
+  EXPECT_LT(report["map"]["width"], 400);
+}
+
 TEST_F(ProgramTest, StrictStopsAtTheFirstBadLine) {
   WriteFile(log_, SmallLog(5) + "FLASER 3 1 2\n" + SmallLog(5));
   ExpectRefusal({"run", log_, "--out", out_, "--strict"}, 3, "room.clf:7: ");
@@ -195,6 +213,44 @@ TEST_F(ProgramTest, FolderThatCannotBeWrittenIsAnOutputError) {
   ExpectRefusal({"run", log_, "--out", "/dev/null"}, 4, "/dev/null: is not a directory");
   fs::create_directories(out_ + "/map.png");
   ExpectRefusal({"run", log_, "--out", out_}, 4, "map.png: is a directory");
+}
+
+TEST_F(ProgramTest, FolderOfASessionIsNotOverwritten) {
+  fs::create_directory(out_);
+  for (const char* name : {"session.json", "journal.clf"}) {
+    WriteFile(out_ + "/" + name, "{}");
+    ExpectRefusal({"run", log_, "--out", out_}, 4, "out: holds a session of loopgrid online");
+    fs::remove(out_ + "/" + name);
+  }
+}
+
+TEST_F(ProgramTest, RunDoesNotOverwriteItsOwnLog) {
+  ASSERT_EQ(Run(log_, out_).status, 0);
+  const std::string corrected = out_ + "/corrected.clf";
+  ExpectRefusal({"run", corrected, "--out", out_}, 2, "corrected.clf: is the input");
+  fs::create_hard_link(log_, out_ + "/linked.clf");
+  fs::remove(corrected);
+  fs::rename(out_ + "/linked.clf", corrected);
+  ExpectRefusal({"run", log_, "--out", out_}, 2, "corrected.clf: is the input");
+}
+
+TEST_F(ProgramTest, FolderInUseByAnotherRunIsAnOutputError) {
+  WriteFile(folder_.File("long.clf"), SmallLog(20000));
+  test_support::Program first({"run", folder_.File("long.clf"), "--out", out_});
+  ASSERT_TRUE(test_support::WaitUntil([this] { return fs::exists(out_) && !fs::is_empty(out_); }));
+  ExpectRefusal({"run", log_, "--out", out_}, 4, "out: is in use by another process");
+  first.Send(SIGKILL);
+  first.Wait();
+  EXPECT_FALSE(fs::is_empty(out_)) << "what a killed run leaves";
+  ASSERT_EQ(Run(log_, out_).status, 0);
+  EXPECT_EQ(FilesIn(out_), kOutputs);
+}
+
+TEST_F(ProgramTest, LinksThatGoInCirclesAreErrorsWithAName) {
+  fs::create_symlink(folder_.File("loop"), folder_.File("loop"));
+  ExpectRefusal({"run", folder_.File("loop"), "--out", out_}, 3, "loop: ");
+  ExpectRefusal({"run", log_, "--out", folder_.File("loop")}, 4, "loop: ");
+  ExpectRefusal({"run", log_, "--out", folder_.File("loop/out")}, 4, "loop");
 }
 
 TEST_F(ProgramTest, FolderWithoutPermissionIsAnOutputError) {

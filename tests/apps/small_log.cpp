@@ -26,25 +26,34 @@ double RangeToWall(const Eigen::Vector2d& from, double direction) {
                   to_wall(from.y(), std::sin(direction), kHalfWidth));
 }
 
+/// What the robot sees from `pose` when odometry says that it is at `odometry`.
+std::string ScanLine(const SE2& pose, const SE2& odometry, double seconds) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  std::string text = "FLASER 180";
+  for (int beam = 0; beam < 180; ++beam) {
+    const double range = RangeToWall(pose.translation(), pose.theta() + (beam - 90) * kDegree);
+    fmt::format_to(std::back_inserter(text), " {:.3f}", range);
+  }
+  const std::string place =
+      fmt::format("{:.6f} {:.6f} {:.6f}", odometry.x(), odometry.y(), odometry.theta());
+  fmt::format_to(std::back_inserter(text), " {} {} {:.6f} host {:.6f}\n", place, place,
+                 1000.0 + seconds, seconds);
+  return text;
+}
+
 }  // namespace
 
 std::string SmallLog(int scans) {
   constexpr double kRadius = 1.5;
-  constexpr double kDegree = std::numbers::pi / 180.0;
   std::string text = "# robot in a room\n";
   for (int i = 0; i < scans; ++i) {
     const double turned = 0.1 * i / kRadius;
     const SE2 pose(kRadius * std::sin(turned), -kRadius * std::cos(turned), turned);
-    text += "FLASER 180";
-    for (int beam = 0; beam < 180; ++beam) {
-      const double range = RangeToWall(pose.translation(), pose.theta() + (beam - 90) * kDegree);
-      fmt::format_to(std::back_inserter(text), " {:.3f}", range);
-    }
-    const std::string place = fmt::format("{:.6f} {:.6f} {:.6f}", pose.x(), pose.y(), pose.theta());
-    fmt::format_to(std::back_inserter(text), " {} {} {:.6f} host {:.6f}\n", place, place,
-                   1000.0 + 0.2 * i, 0.2 * i);
+    text += ScanLine(pose, pose, 0.2 * i);
   }
   return text;
 }
+
+std::string StrayScan() { return ScanLine(SE2(), SE2(3e5, 0.0, 0.0), 1e4); }
 
 }  // namespace loopgrid::test_support

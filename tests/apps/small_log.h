@@ -9,4 +9,7 @@ namespace loopgrid::test_support {
 /// one.
 std::string SmallLog(int scans);
 
+/// Another scan of that room, of which odometry says that it is 300 km away.
+std::string StrayScan();
+
 }  // namespace loopgrid::test_support

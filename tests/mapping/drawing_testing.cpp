@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "mapping/graph_drawing.h"
+#include "mapping/fitted_map.h"
 
 namespace loopgrid::test_support {
 

@@ -148,13 +148,5 @@ TEST(DrawGraphBeforeAfter, ShowsTheThirdDimensionUpwards) {
   EXPECT_LT(above.rows, above.cols);  // a point
 }
 
-TEST(RenderBackdrop, KeepsToAFewCellsHoweverLargeTheMap) {
-  std::vector<SE2> poses = {SE2(), SE2(5000.0, 3000.0, 0.0)};
-  const OccupancyGrid large = Backdrop(poses);
-  EXPECT_LE(large.SeenBox().width(), 1202);
-  poses.pop_back();
-  EXPECT_EQ(Backdrop(poses).resolution(), OccupancyGridOptions().resolution);
-}
-
 }  // namespace
 }  // namespace loopgrid

@@ -282,7 +282,7 @@ TEST(OccupancyGridOptions, NamesTheFieldThatIsOutOfRange) {
     return "";
   };
   EXPECT_EQ(message({}), "");
-  EXPECT_EQ(message({.resolution = 0.0}), "resolution is 0, expected 0.001 to 100");
+  EXPECT_EQ(message({.resolution = 0.0}), "resolution is 0, expected 0.001 to 100000");
   EXPECT_THAT(message({.resolution = kNan}), HasSubstr("resolution is nan"));
   EXPECT_THAT(message({.hit_log_odds = -1.0}), HasSubstr("hit_log_odds is -1"));
   EXPECT_THAT(message({.miss_log_odds = 0.4}), HasSubstr("miss_log_odds is 0.4"));

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "apps/net/descriptor.h"
 #include "apps/online/online_options.h"
 #include "apps/online/session/journal.h"
 #include "apps/output/output_directory.h"
@@ -29,14 +28,12 @@ class SessionFolder {
   Journal* journal() { return journal_.get(); }
 
  private:
-  void Lock();
   void Begin(const OnlineOptions& options) const;
   void Resume(OnlineOptions* options) const;
   void CopyJournalOf(const std::string& other) const;
   std::string File(const char* name) const { return path_ + "/" + name; }
 
   std::string path_;
-  Descriptor lock_;
   std::unique_ptr<Journal> journal_;
 };
 

@@ -170,5 +170,36 @@ TEST(MapTiles, GiveTheWholePictureAsDrawMapDoes) {
   EXPECT_EQ(MapYaml(picture.box, 1.0, "map.pgm"), MapYaml(grid, "map.pgm"));
 }
 
+// Oracle: every pixel of the picture from all of its cells.
+TEST(MapTiles, DrawAPictureCoarserThatWouldBeTooLarge) {
+  OccupancyGrid grid = EmptyGrid();
+  AddWall(-300, 7, &grid);
+  AddFree(5, -270, &grid);
+  AddWall(290, 20, &grid);
+  AddFree(291, 21, &grid);
+  MapTiles tiles;
+  tiles.Update(grid, grid.SeenBox());
+  const CellBox seen = grid.SeenBox();
+  ASSERT_EQ(std::max(seen.width(), seen.height()), 593);
+  for (const auto& [max_side, level] :
+       std::vector<std::pair<int, int>>{{593, 0}, {592, 1}, {100, 3}, {10, 6}, {3, 8}, {2, 9}}) {
+    const MapPicture picture = tiles.Picture(max_side);
+    EXPECT_EQ(picture.cells_per_pixel, 1 << level) << max_side;
+    EXPECT_LE(std::max(picture.image.width, picture.image.height), max_side);
+    std::vector<std::uint8_t> expected(picture.image.pixels.size(), kGreyUnknown);
+    for (std::int64_t y = seen.min_y; y < seen.max_y; ++y) {
+      for (std::int64_t x = seen.min_x; x < seen.max_x; ++x) {
+        const CellState state = grid.State(x, y);
+        if (state == CellState::kUnknown) continue;
+        const std::int64_t row = picture.box.max_y - 1 - (y >> level);
+        const std::int64_t column = (x >> level) - picture.box.min_x;
+        auto& pixel = expected.at(static_cast<std::size_t>(row * picture.box.width() + column));
+        if (pixel != kGreyWall) pixel = state == CellState::kWall ? kGreyWall : kGreyFree;
+      }
+    }
+    EXPECT_TRUE(picture.image.pixels == expected) << max_side;
+  }
+}
+
 }  // namespace
 }  // namespace loopgrid

@@ -8,6 +8,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -141,6 +142,20 @@ TEST_F(OnlineCommandTest, StoppedAndResumedItGivesTheBytesOfRun) {
     EXPECT_TRUE(std::filesystem::exists(File(out + "/report.json")));
     ExpectDone(RunOnline({"--resume", File(out), "--quiet"}, File("room.clf")), out);
   }
+}
+
+TEST_F(OnlineCommandTest, SignalThatComesTwiceIsOneAndLeavesAllFiles) {
+  Program program({"online", "--follow", File("room.clf"), "--out", File("live"), "--events",
+                   File("events"), "--quiet"});
+  WaitForEvent(File("events"), "pose", "scan", kScans - 1);
+  WaitForEvent(File("events"), "warning");
+  // As timeout(1) does, to the process and to its group; long within a second.
+  const auto start = std::chrono::steady_clock::now();
+  do {
+    program.Send(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(50));
+  ExpectDone(program.Wait(), "live");
 }
 
 TEST_F(OnlineCommandTest, SecondSignalEndsAtOnceAndLosesNothing) {

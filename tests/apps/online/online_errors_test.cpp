@@ -34,6 +34,7 @@ using test_support::ReadFile;
 using test_support::RunOnline;
 using test_support::RunProgram;
 using test_support::SmallLog;
+using test_support::StrayScan;
 using test_support::TemporaryDirectory;
 using test_support::WaitForEvent;
 using ::testing::AllOf;
@@ -168,6 +169,36 @@ TEST_F(OnlineErrorsTest, FolderThatVanishesIsAnOutputError) {
   const ProgramResult result = program.Wait();
   ExpectOneLine(result, 4, "live/");
   EXPECT_FALSE(fs::exists(File("live")));
+}
+
+TEST_F(OnlineErrorsTest, EventsDoNotOverwriteWhatTheSessionReadsOrKeeps) {
+  const std::string out = File("live");
+  for (const char* name : {"journal.clf", "session.json", "map.png", "../live/./report.json"}) {
+    ExpectRefusal({"--out", out, "--events", out + "/" + name}, 2, "is a file of the session");
+  }
+  ExpectRefusal({"--out", out, "--follow", File("room.clf"), "--events", File("./room.clf")}, 2,
+                "room.clf: is the input");
+  ASSERT_EQ(RunOnline({"--out", out}, File("room.clf")).status, 0);
+  std::filesystem::create_hard_link(File("live/journal.clf"), File("other-name"));
+  ExpectRefusal({"--resume", out, "--events", File("other-name")}, 2, "is a file of the session");
+  ExpectRefusal({"--resume", out, "--follow", out + "/journal.clf"}, 2,
+                "the session's own journal");
+  EXPECT_EQ(ReadFile(File("live/journal.clf")), ReadFile(File("room.clf")));
+}
+
+TEST_F(OnlineErrorsTest, FoldersThatCannotBeReadAreInputErrors) {
+  fs::create_symlink(File("loop"), File("loop"));
+  ExpectRefusal({"--resume", File("loop")}, 3, "loop: cannot be read: ");
+  ExpectRefusal({"--out", File("live"), "--continue", File("loop")}, 3, "loop: cannot be read: ");
+}
+
+TEST_F(OnlineErrorsTest, ScanThreeHundredKilometresOffCostsNoFile) {
+  folder_.Write("stray.clf", SmallLog(30) + StrayScan());
+  const ProgramResult result =
+      RunOnline({"--out", File("live"), "--interval", "0.01"}, File("stray.clf"));
+  ExpectOneLine(result, 0, "note: the map is without 1 scan");
+  ASSERT_EQ(RunProgram({"run", File("stray.clf"), "--out", File("run")}).status, 0);
+  ExpectSameFiles(File("live"), File("run"));
 }
 
 TEST_F(OnlineErrorsTest, FolderInUseIsAnOutputError) {

@@ -119,6 +119,67 @@ TEST(OutputDirectory, PlaceOfAFileThatIsAFolderIsRefused) {
                     root.File("a") + ": is a directory, and a file of this name is to be written");
 }
 
+TEST(OutputDirectory, FileThatCannotBeReplacedLeavesAllOthersAsTheyWere) {
+  const TemporaryDirectory root;
+  WriteFile(root.File("a"), "old a");
+  WriteFile(root.File("c"), "old c");
+  {
+    OutputDirectory outputs(root.File(""), {"a", "b", "c", "d"});
+    outputs.Prepare();
+    for (const char* name : {"a", "b", "c", "d"}) outputs.Write(name, "new");
+    std::filesystem::create_directory(root.File("d"));  // since it was looked at
+    EXPECT_THROW(outputs.Commit(), Error);
+  }
+  EXPECT_EQ(root.Everything(), (Names{"a", "c", "d"}));
+  EXPECT_EQ(ReadFile(root.File("a")), "old a");
+  EXPECT_EQ(ReadFile(root.File("c")), "old c");
+}
+
+TEST(OutputDirectory, FileThatIsLeftOutGoesWithTheEarlierRun) {
+  const TemporaryDirectory root;
+  WriteFile(root.File("b"), "old");
+  OutputDirectory outputs(root.File(""), {"a", "b", "c"});
+  outputs.Prepare();
+  outputs.Write("a", "new");
+  outputs.LeaveOut("b");
+  outputs.LeaveOut("c");
+  EXPECT_EQ(ReadFile(root.File("b")), "old");
+  outputs.Commit();
+  EXPECT_EQ(root.Everything(), Names{"a"});
+}
+
+TEST(OutputDirectory, BelongsToOneAtATime) {
+  const TemporaryDirectory root;
+  {
+    OutputDirectory first(root.File("out"), {"a"});
+    first.Prepare();
+    const Names before = root.Everything();
+    {
+      OutputDirectory second(root.File("out"), {"b"});
+      ExpectOutputError(&second, root.File("out") + ": is in use by another process");
+    }
+    EXPECT_EQ(root.Everything(), before);
+    first.Write("a", "first");
+    first.Commit();
+  }
+  OutputDirectory later(root.File("out"), {"a"});
+  later.Prepare();
+  EXPECT_EQ(ReadFile(root.File("out/a")), "first");
+}
+
+TEST(OutputDirectory, RemovesWhatAKilledProcessLeftUnfinished) {
+  const TemporaryDirectory root;
+  std::filesystem::create_directory(root.File(".loopgrid-unfinished-abc"));
+  WriteFile(root.File(".loopgrid-unfinished-abc/a"), "half");
+  WriteFile(root.File(".a.tmp-123-4"), "half");
+  WriteFile(root.File(".mine.tmp-1"), "not ours");
+  {
+    OutputDirectory outputs(root.File(""), {"a"});
+    outputs.Prepare();
+  }
+  EXPECT_EQ(root.Everything(), Names{".mine.tmp-1"});
+}
+
 TEST(OutputDirectory, DiscardBeforePrepareLeavesNothingToDo) {
   const TemporaryDirectory root;
   OutputDirectory outputs(root.File("new"), {"a"});

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "backend/base/error.h"
 #include "tests/support/temporary_directory.h"
@@ -55,6 +56,33 @@ TEST(OutputFiles, DiscardRemovesEveryTrace) {
   EXPECT_EQ(root.Everything().size(), 2u);
   outputs.Discard();
   EXPECT_EQ(root.Everything(), Names{});
+}
+
+TEST(OutputFiles, OneThatCannotBeReplacedLeavesAllOthersAsTheyWere) {
+  const TemporaryDirectory root;
+  WriteFile(root.File("a"), "old a");
+  const std::vector<std::string> paths = {root.File("a"), root.File("b"), root.File("c")};
+  {
+    OutputFiles outputs(paths);
+    outputs.Open();
+    for (const std::string& path : paths) outputs.Write(path, "new");
+    std::filesystem::create_directory(root.File("c"));  // since it was opened
+    EXPECT_THROW(outputs.Commit(), Error);
+  }
+  EXPECT_EQ(root.Everything(), (Names{"a", "c"}));
+  EXPECT_EQ(ReadFile(root.File("a")), "old a");
+}
+
+TEST(OutputFiles, ReplacesWhatALinkPointsTo) {
+  const TemporaryDirectory root;
+  WriteFile(root.File("target"), "old");
+  std::filesystem::create_symlink(root.File("target"), root.File("link"));
+  OutputFiles outputs({root.File("link")});
+  outputs.Open();
+  outputs.Write(root.File("link"), "new");
+  outputs.Commit();
+  EXPECT_EQ(ReadFile(root.File("target")), "new");
+  EXPECT_EQ(root.Everything(), (Names{"link", "target"}));
 }
 
 TEST(OutputFiles, OneThatCannotBeWrittenStopsAll) {

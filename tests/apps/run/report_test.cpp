@@ -28,6 +28,7 @@ RunReport SomeReport() {
   report.closures = {{"accepted", 5}, {"low-score", 2}, {"inconsistent", 1}};
   report.map_width = 200;
   report.map_height = 100;
+  report.map_resolution = 0.1;
   report.data_seconds = 60.0;
   report.total_seconds = 0.5;
   report.peak_memory_mb = 42.0;

@@ -144,6 +144,26 @@ TEST_F(SessionFolderTest, NothingToContinueIsAnInputError) {
   ExpectRefusal(begin_, ErrorCode::kInput, "old: holds no journal.clf and no corrected.clf");
 }
 
+TEST_F(SessionFolderTest, FoldersThatCannotBeReadAreInputErrors) {
+  std::filesystem::create_symlink(folder_.File("loop"), folder_.File("loop"));
+  resume_.run.out = resume_.resume = folder_.File("loop");
+  ExpectRefusal(resume_, ErrorCode::kInput, "loop: cannot be read: Too many levels");
+  begin_.continued = folder_.File("loop");
+  ExpectRefusal(begin_, ErrorCode::kInput, "loop: cannot be read: Too many levels");
+  // Files in place of folders, folders in place of files.
+  folder_.Write("file", "");
+  resume_.run.out = resume_.resume = folder_.File("file");
+  ExpectRefusal(resume_, ErrorCode::kInput, "file: holds no session to resume");
+  begin_.continued = folder_.File("file");
+  ExpectRefusal(begin_, ErrorCode::kInput, "file: holds no journal.clf");
+  std::filesystem::create_directories(folder_.File("old/journal.clf"));
+  begin_.continued = folder_.File("old");
+  ExpectRefusal(begin_, ErrorCode::kInput, "old/journal.clf: ");
+  std::filesystem::create_directories(folder_.File("odd/session.json"));
+  resume_.run.out = resume_.resume = folder_.File("odd");
+  ExpectRefusal(resume_, ErrorCode::kInput, "odd/session.json: is damaged");
+}
+
 TEST_F(SessionFolderTest, SessionKilledBeforeItHadItsOldLinesGetsThemWhenResumed) {
   std::filesystem::create_directory(folder_.File("old"));
   folder_.Write("old/journal.clf", "# old\n");
