@@ -54,6 +54,18 @@ std::string SmallLog(int scans) {
   return text;
 }
 
+std::string LongWay() {
+  std::string text;
+  for (int i = 0; i < 5; ++i) {
+    const std::string place = fmt::format("{:.6f} 0.000000 0.000000", 90.0 * i);
+    text += "FLASER 180";
+    for (int beam = 0; beam < 180; ++beam) text += beam < 20 ? " 3.000" : " 81.900";
+    fmt::format_to(std::back_inserter(text), " {} {} {:.6f} host {:.6f}\n", place, place,
+                   1000.0 + 90.0 * i, 90.0 * i);
+  }
+  return text;
+}
+
 std::string StrayScan() { return ScanLine(SE2(), SE2(3e5, 0.0, 0.0), 1e4); }
 
 }  // namespace loopgrid::test_support

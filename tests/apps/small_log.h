@@ -12,4 +12,7 @@ std::string SmallLog(int scans);
 /// Another scan of that room, of which odometry says that it is 300 km away.
 std::string StrayScan();
 
+/// Five scans 90 m apart: a map of them with cells of 0.01 m is longer than an image may be.
+std::string LongWay();
+
 }  // namespace loopgrid::test_support

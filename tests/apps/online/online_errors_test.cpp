@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -28,13 +29,13 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::ExpectSameFiles;
 using test_support::Listener;
+using test_support::LongWay;
 using test_support::Program;
 using test_support::ProgramResult;
 using test_support::ReadFile;
 using test_support::RunOnline;
 using test_support::RunProgram;
 using test_support::SmallLog;
-using test_support::StrayScan;
 using test_support::TemporaryDirectory;
 using test_support::WaitForEvent;
 using ::testing::AllOf;
@@ -192,12 +193,20 @@ TEST_F(OnlineErrorsTest, FoldersThatCannotBeReadAreInputErrors) {
   ExpectRefusal({"--out", File("live"), "--continue", File("loop")}, 3, "loop: cannot be read: ");
 }
 
-TEST_F(OnlineErrorsTest, ScanThreeHundredKilometresOffCostsNoFile) {
-  folder_.Write("stray.clf", SmallLog(30) + StrayScan());
-  const ProgramResult result =
-      RunOnline({"--out", File("live"), "--interval", "0.01"}, File("stray.clf"));
-  ExpectOneLine(result, 0, "note: the map is without 1 scan");
-  ASSERT_EQ(RunProgram({"run", File("stray.clf"), "--out", File("run")}).status, 0);
+TEST_F(OnlineErrorsTest, MapThatWouldBeTooLargeIsDrawnCoarserAllTheTime) {
+  folder_.Write("long.clf", LongWay());
+  Program program({"online", "--follow", File("long.clf"), "--out", File("live"), "--events",
+                   File("events"), "--interval", "0.01", "--resolution", "0.01", "--quiet"});
+  WaitForEvent(File("events"), "saved", "scans", 5);
+  EXPECT_THAT(ReadFile(File("live/map.yaml")), HasSubstr("resolution: 0.02\n"));
+  const auto warning = WaitForEvent(File("events"), "warning");
+  ASSERT_TRUE(warning.has_value());
+  EXPECT_THAT(warning->dump(), HasSubstr("pixels of 0.02 m"));
+  program.Send(SIGTERM);
+  ExpectOneLine(program.Wait(), 0, "note: the map has cells of 0.02 m");
+  ASSERT_EQ(
+      RunProgram({"run", File("long.clf"), "--out", File("run"), "--resolution", "0.01"}).status,
+      0);
   ExpectSameFiles(File("live"), File("run"));
 }
 
