@@ -260,10 +260,12 @@ TEST_F(ProgramTest, FolderInUseByAnotherRunIsAnOutputError) {
 }
 
 TEST_F(ProgramTest, LinksThatGoInCirclesAreErrorsWithAName) {
-  fs::create_symlink(folder_.File("loop"), folder_.File("loop"));
-  ExpectRefusal({"run", folder_.File("loop"), "--out", out_}, 3, "loop: ");
-  ExpectRefusal({"run", log_, "--out", folder_.File("loop")}, 4, "loop: ");
-  ExpectRefusal({"run", log_, "--out", folder_.File("loop/out")}, 4, "loop");
+  const TemporaryDirectory links;
+  const std::string loop = links.File("loop");
+  fs::create_symlink(loop, loop);
+  ExpectRefusal({"run", loop, "--out", out_}, 3, "loop: ");
+  ExpectRefusal({"run", log_, "--out", loop}, 4, "loop: ");
+  ExpectRefusal({"run", log_, "--out", loop + "/out"}, 4, "loop");
 }
 
 TEST_F(ProgramTest, FolderWithoutPermissionIsAnOutputError) {

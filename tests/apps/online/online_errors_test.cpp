@@ -188,9 +188,11 @@ TEST_F(OnlineErrorsTest, EventsDoNotOverwriteWhatTheSessionReadsOrKeeps) {
 }
 
 TEST_F(OnlineErrorsTest, FoldersThatCannotBeReadAreInputErrors) {
-  fs::create_symlink(File("loop"), File("loop"));
-  ExpectRefusal({"--resume", File("loop")}, 3, "loop: cannot be read: ");
-  ExpectRefusal({"--out", File("live"), "--continue", File("loop")}, 3, "loop: cannot be read: ");
+  const TemporaryDirectory links;
+  const std::string loop = links.File("loop");
+  fs::create_symlink(loop, loop);
+  ExpectRefusal({"--resume", loop}, 3, "loop: cannot be read: ");
+  ExpectRefusal({"--out", File("live"), "--continue", loop}, 3, "loop: cannot be read: ");
 }
 
 TEST_F(OnlineErrorsTest, MapThatWouldBeTooLargeIsDrawnCoarserAllTheTime) {

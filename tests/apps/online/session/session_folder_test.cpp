@@ -145,10 +145,12 @@ TEST_F(SessionFolderTest, NothingToContinueIsAnInputError) {
 }
 
 TEST_F(SessionFolderTest, FoldersThatCannotBeReadAreInputErrors) {
-  std::filesystem::create_symlink(folder_.File("loop"), folder_.File("loop"));
-  resume_.run.out = resume_.resume = folder_.File("loop");
+  const TemporaryDirectory links;
+  const std::string loop = links.File("loop");
+  std::filesystem::create_symlink(loop, loop);
+  resume_.run.out = resume_.resume = loop;
   ExpectRefusal(resume_, ErrorCode::kInput, "loop: cannot be read: Too many levels");
-  begin_.continued = folder_.File("loop");
+  begin_.continued = loop;
   ExpectRefusal(begin_, ErrorCode::kInput, "loop: cannot be read: Too many levels");
   // Files in place of folders, folders in place of files.
   folder_.Write("file", "");
