@@ -203,7 +203,12 @@ void OnlineCommand(OnlineOptions options) {
   };
   const InterruptWatch watch({stop, clean_up});
 
-  SessionFolder folder(&options, &outputs);
+  SessionRequest request = {.run = options.run,
+                            .resume = options.resume,
+                            .continued = options.continued,
+                            .given = options.given};
+  SessionFolder folder(&request, &outputs);
+  options.run = request.run;
   EventWriter events = options.events.empty() ? EventWriter() : EventWriter(options.events);
   LineQueue queue;
   LiveOutputs live(options, source.get(), &queue, &events);

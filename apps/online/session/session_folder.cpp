@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string FormatSession(const OnlineOptions& options) {
+std::string FormatSession(const SessionRequest& options) {
   JsonWriter json(JsonWriter::Layout::kIndented);
   json.BeginObject().Field("program", "loopgrid").Field("version", LOOPGRID_VERSION);
   AddMappingFields(options.run, &json);
@@ -32,7 +32,7 @@ std::string FormatSession(const OnlineOptions& options) {
 }
 
 template <typename Value>
-void Adopt(const MappingOption& option, const Value& stored, const OnlineOptions& options,
+void Adopt(const MappingOption& option, const Value& stored, const SessionRequest& options,
            Value* value) {
   if (options.given.contains(option.key) && *value != stored) {
     throw Error(ErrorCode::kUsage, fmt::format("{} is {}, but the session in {} was begun with {}",
@@ -60,7 +60,7 @@ std::string LinesOf(const std::string& folder) {
 
 }  // namespace
 
-SessionFolder::SessionFolder(OnlineOptions* options, OutputDirectory* outputs)
+SessionFolder::SessionFolder(SessionRequest* options, OutputDirectory* outputs)
     : path_(options->run.out) {
   const bool resumed = !options->resume.empty();
   if (resumed && !Exists(path_, kSessionName)) {
@@ -86,7 +86,7 @@ SessionFolder::~SessionFolder() {
   fs::remove(File(kSessionName), ignored);
 }
 
-void SessionFolder::Begin(const OnlineOptions& options) const {
+void SessionFolder::Begin(const SessionRequest& options) const {
   std::error_code ignored;
   if (fs::exists(File(kJournalName), ignored) && fs::file_size(File(kJournalName), ignored) > 0) {
     throw Error(ErrorCode::kOutput,
@@ -100,7 +100,7 @@ void SessionFolder::Begin(const OnlineOptions& options) const {
   WriteFileAtomically(File(kSessionName), FormatSession(options));
 }
 
-void SessionFolder::Resume(OnlineOptions* options) const {
+void SessionFolder::Resume(SessionRequest* options) const {
   const JsonMembers session(File(kSessionName));
   for (const MappingOption& option : MappingOptions()) {
     if (option.number == nullptr) {

@@ -1,24 +1,35 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 
-#include "apps/online/online_options.h"
 #include "apps/online/session/journal.h"
 #include "apps/output/output_directory.h"
+#include "apps/settings/run_options.h"
 
 namespace loopgrid {
+
+/// Which session is asked for.
+struct SessionRequest {
+  RunOptions run;         ///< run.out is the session's folder; run.log is set to its journal
+  std::string resume;     ///< the folder of a session to go on with; empty: a new one
+  std::string continued;  ///< the folder of a session whose map the new one goes on with
+
+  /// Which options that decide the result were given; the others come from a resumed session.
+  std::set<std::string> given;
+};
 
 /// The folder of a session, held against other processes: its journal, and what it was started
 /// with in session.json.
 class SessionFolder {
  public:
-  /// Prepares `outputs` (which are in the folder options->run.out). Begins a session, or resumes
-  /// the one that is there if options->resume is set; the options that decide its result are then
-  /// completed. Sets options->run.log. Throws Error: kOutput if the folder is in use, holds a
-  /// session already or cannot be written; kInput if there is none to resume or to continue; kUsage
-  /// if an option contradicts the resumed session's.
-  SessionFolder(OnlineOptions* options, OutputDirectory* outputs);
+  /// Prepares `outputs` (which are in the folder request->run.out). Begins a session, or resumes
+  /// the one that is there if request->resume is set; the options that decide its result are then
+  /// completed. Sets request->run.log. Throws Error: kOutput if the folder is in use, holds a
+  /// session already or cannot be written; kInput if there is none to resume or to continue, or
+  /// it cannot be read; kUsage if an option contradicts the resumed session's.
+  SessionFolder(SessionRequest* request, OutputDirectory* outputs);
 
   /// Leaves nothing of a session in which nothing was received.
   ~SessionFolder();
@@ -28,8 +39,8 @@ class SessionFolder {
   Journal* journal() { return journal_.get(); }
 
  private:
-  void Begin(const OnlineOptions& options) const;
-  void Resume(OnlineOptions* options) const;
+  void Begin(const SessionRequest& request) const;
+  void Resume(SessionRequest* request) const;
   void CopyJournalOf(const std::string& other) const;
   std::string File(const char* name) const { return path_ + "/" + name; }
 

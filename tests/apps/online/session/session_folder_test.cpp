@@ -24,10 +24,10 @@ using ::testing::ThrowsMessage;
 
 /// A session's folder, open.
 struct OpenFolder {
-  explicit OpenFolder(const OnlineOptions& given)
+  explicit OpenFolder(const SessionRequest& given)
       : options(given), outputs(given.run.out, RunOutputNames()), folder(&options, &outputs) {}
 
-  OnlineOptions options;
+  SessionRequest options;
   OutputDirectory outputs;
   SessionFolder folder;
 };
@@ -45,7 +45,7 @@ class SessionFolderTest : public ::testing::Test {
   /// A session of one line.
   void BeginSession() const { OpenFolder(begin_).folder.journal()->Append({.text = "# line"}); }
 
-  void ExpectRefusal(const OnlineOptions& options, ErrorCode code,
+  void ExpectRefusal(const SessionRequest& options, ErrorCode code,
                      const std::string& reason) const {
     const std::set<std::string> before = folder_.Everything();
     try {
@@ -59,8 +59,8 @@ class SessionFolderTest : public ::testing::Test {
   }
 
   TemporaryDirectory folder_;
-  OnlineOptions begin_;
-  OnlineOptions resume_;
+  SessionRequest begin_;
+  SessionRequest resume_;
 };
 
 TEST_F(SessionFolderTest, ResumedSessionHasTheOptionsThatItWasBegunWith) {
