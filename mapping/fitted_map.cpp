@@ -58,11 +58,11 @@ class MapFitting {
   std::int64_t FactorFor(const CellBox& box) const {
     if (Fits(box.width(), box.height())) return 1;
     // Larger cells may cover a little more on every side.
-    constexpr std::int64_t kMargin = 3;
+    constexpr std::int64_t kBorder = 3;
     constexpr std::int64_t kLargest = std::int64_t{1} << 31;  // one cell for everything
     std::int64_t factor = 2;
     while (factor < kLargest &&
-           !Fits(box.width() / factor + kMargin, box.height() / factor + kMargin)) {
+           !Fits(box.width() / factor + kBorder, box.height() / factor + kBorder)) {
       ++factor;
     }
     return factor;
@@ -149,7 +149,11 @@ FittedMap RenderFittedMap(std::span<const SE2> poses, const ScanAt& scan_at,
   FittedMap map{
       .grid = OccupancyGrid(factor == 1 ? options : Coarser(options, static_cast<double>(factor))),
       .left_out = {}};
-  if (factor == 1) map.grid.Reserve(box);
+  CellBox needed;
+  for (const PlacedScan& scan : scans) {
+    needed = needed.United(map.grid.BoxOf(poses[scan.index], scan_at(scan.index)));
+  }
+  map.grid.Reserve(needed);
   std::size_t next = 0;  // the first scan about which nothing is known yet
   for (const PlacedScan& scan : scans) {
     for (; next < scan.index; ++next) map.left_out.push_back(next);

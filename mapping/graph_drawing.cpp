@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "backend/base/error.h"
+#include "backend/base/index.h"
 #include "mapping/canvas.h"
 #include "mapping/map_view.h"
 #include "mapping/picture_layout.h"
@@ -28,8 +29,6 @@ constexpr double kBorder = 0.008;        // free space around the graph, share o
 constexpr double kAzimuth = -55.0;
 constexpr double kElevation = 28.0;
 constexpr double kPalest = 0.75;  // share of white in the colour of what is farthest away
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 /// A parallel projection: the axes of the picture and the direction away from the eye.
 struct Projection {
@@ -89,7 +88,7 @@ Panel Project(const GraphState& state, Viewpoint viewpoint) {
 }
 
 double DepthOf(const GraphEdge& edge, const Panel& panel) {
-  return 0.5 * (panel.depths[Index(edge.from)] + panel.depths[Index(edge.to)]);
+  return 0.5 * (panel.depths[ToIndex(edge.from)] + panel.depths[ToIndex(edge.to)]);
 }
 
 /// The order to draw edges in: far ones first; of equally far ones, the robot's way last.
@@ -97,11 +96,11 @@ std::vector<int> BackToFront(std::span<const GraphEdge> edges, const Panel& pane
   std::vector<int> order(edges.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    const double depth_a = DepthOf(edges[Index(a)], panel);
-    const double depth_b = DepthOf(edges[Index(b)], panel);
+    const double depth_a = DepthOf(edges[ToIndex(a)], panel);
+    const double depth_b = DepthOf(edges[ToIndex(b)], panel);
     if (depth_a != depth_b) return depth_a > depth_b;
-    return edges[Index(a)].kind == EdgeKind::kClosure &&
-           edges[Index(b)].kind != edges[Index(a)].kind;
+    return edges[ToIndex(a)].kind == EdgeKind::kClosure &&
+           edges[ToIndex(b)].kind != edges[ToIndex(a)].kind;
   });
   return order;
 }
@@ -125,7 +124,7 @@ double InkOf(std::span<const GraphEdge> edges, EdgeKind kind, const Panel& panel
   double pixels = 0.0;
   for (const GraphEdge& edge : edges) {
     if (edge.kind != kind) continue;
-    const Eigen::Vector2d way = panel.nodes[Index(edge.to)] - panel.nodes[Index(edge.from)];
+    const Eigen::Vector2d way = panel.nodes[ToIndex(edge.to)] - panel.nodes[ToIndex(edge.from)];
     pixels += std::max(1.0, pixels_per_metre * way.norm());
   }
   return pixels / (1.0 * area.width * area.height);
@@ -137,12 +136,12 @@ void DrawEdges(std::span<const GraphEdge> edges, const Panel& panel, const Pixel
   const Pen sequential = PenFor(InkOf(edges, EdgeKind::kSequential, panel, area, scale));
   const Pen closure = PenFor(InkOf(edges, EdgeKind::kClosure, panel, area, scale));
   for (int k : BackToFront(edges, panel)) {
-    const GraphEdge& edge = edges[Index(k)];
+    const GraphEdge& edge = edges[ToIndex(k)];
     const bool is_closure = edge.kind == EdgeKind::kClosure;
     const Color color =
         Mix(is_closure ? kClosureColor : kSequentialColor, kWhite, kPalest * DepthOf(edge, panel));
-    const Eigen::Vector2d& from = panel.nodes[Index(edge.from)];
-    const Eigen::Vector2d& to = panel.nodes[Index(edge.to)];
+    const Eigen::Vector2d& from = panel.nodes[ToIndex(edge.from)];
+    const Eigen::Vector2d& to = panel.nodes[ToIndex(edge.to)];
     if (!is_closure && sequential.is_broad) {
       view->DrawLine(from, to, color, 2);
     } else {
@@ -184,7 +183,7 @@ void DrawPanel(const GraphState& state, const Panel& panel, std::span<const Grap
   if (viewpoint == Viewpoint::kOblique) DrawAxes(area.left + area.width, base, canvas);
 }
 
-void DrawLegend(std::span<const GraphEdge> edges, std::size_t landmarks, Canvas* canvas) {
+void DrawGraphLegend(std::span<const GraphEdge> edges, std::size_t landmarks, Canvas* canvas) {
   const auto closures = std::count_if(edges.begin(), edges.end(), [](const GraphEdge& edge) {
     return edge.kind == EdgeKind::kClosure;
   });
@@ -209,7 +208,7 @@ void RequireFinite(std::span<const Eigen::Vector3d> points, const char* what) {
 
 void RequireNodesOf(std::span<const GraphEdge> edges, std::size_t node_count) {
   for (const GraphEdge& edge : edges) {
-    const auto exists = [node_count](int node) { return node >= 0 && Index(node) < node_count; };
+    const auto exists = [node_count](int node) { return node >= 0 && ToIndex(node) < node_count; };
     if (exists(edge.from) && exists(edge.to)) continue;
     throw Error(ErrorCode::kUsage, fmt::format("edge {} - {}: the graph has {} nodes", edge.from,
                                                edge.to, node_count));
@@ -237,7 +236,7 @@ std::string DrawGraphBeforeAfter(const GraphState& before, const GraphState& aft
   DrawPanel(before, left, edges, viewpoint, {kPictureMargin, top, size.x(), size.y()}, &canvas);
   DrawPanel(after, right, edges, viewpoint,
             {2 * kPictureMargin + size.x(), top, size.x(), size.y()}, &canvas);
-  DrawLegend(edges, after.landmarks.size(), &canvas);
+  DrawGraphLegend(edges, after.landmarks.size(), &canvas);
   return canvas.EncodePng();
 }
 

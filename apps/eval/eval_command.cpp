@@ -120,7 +120,7 @@ std::string Compare(const EvalOptions& options, const Trajectory& estimate,
          fmt::format("{:<13} {} poses of the reference\n", "unmatched", result.unmatched);
 }
 
-std::optional<ReferenceKind> KindOf(const EvalOptions& options) {
+std::optional<ReferenceKind> ReferenceKindOf(const EvalOptions& options) {
   if (options.relations) return ReferenceKind::kRelations;
   if (options.trajectory) return ReferenceKind::kTrajectory;
   return std::nullopt;
@@ -137,7 +137,7 @@ void EvalOptions::Validate() const {
 void EvalCommand(const EvalOptions& options) {
   options.Validate();
   const Trajectory estimate = ReadTumFile(options.estimate);
-  const Reference reference = ReadReference(options.reference, KindOf(options));
+  const Reference reference = ReadReference(options.reference, ReferenceKindOf(options));
   PrintToStandardOutput(std::visit(
       [&](const auto& content) { return Compare(options, estimate, content); }, reference));
 }

@@ -11,7 +11,8 @@
 #include <utility>
 
 #include "apps/live/moving_map.h"
-#include "backend/base/error.h"
+#include "backend/base/option_check.h"
+#include "backend/base/stopwatch.h"
 
 namespace loopgrid {
 namespace {
@@ -22,22 +23,6 @@ using Clock = std::chrono::steady_clock;
 // of work.
 constexpr std::size_t kSlice = 32;
 
-// What is kept of an update.
-struct Change {
-  ScanOnMap scan;                           // if it has points
-  std::shared_ptr<const NodeStates> nodes;  // may be null
-};
-
-Clock::duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-void RequireBetween(const char* field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("{} is {}, expected {} to {}", field, value, low, high));
-}
-
 }  // namespace
 
 void LiveMapOptions::Validate() const {
@@ -47,6 +32,13 @@ void LiveMapOptions::Validate() const {
 }
 
 class LiveMap::Impl {
+ private:
+  // What is kept of an update.
+  struct Change {
+    ScanOnMap scan;                           // if it has points
+    std::shared_ptr<const NodeStates> nodes;  // may be null
+  };
+
  public:
   explicit Impl(const LiveMapOptions& options)
       : options_((options.Validate(), options)), map_(options.grid) {
@@ -155,9 +147,10 @@ class LiveMap::Impl {
     }
     map_.ContinueRedraw(kSlice);
     if (map_.IsRedrawing()) return;
-    next_redraw_ = redraw_start_ +
-                   Seconds(options_.redraw_pause *
-                           std::chrono::duration<double>(Clock::now() - redraw_start_).count());
+    next_redraw_ =
+        redraw_start_ +
+        ClockDuration(options_.redraw_pause *
+                      std::chrono::duration<double>(Clock::now() - redraw_start_).count());
     has_unpublished_ = true;
     ++redraws_;
   }
@@ -165,7 +158,7 @@ class LiveMap::Impl {
   void Publish(bool hurry) {
     if (!has_unpublished_ || (!hurry && Clock::now() < next_publish_)) return;
     tiles_.Update(map_.grid(), map_.TakeChanges());
-    next_publish_ = Clock::now() + Seconds(options_.publish_interval);
+    next_publish_ = Clock::now() + ClockDuration(options_.publish_interval);
     has_unpublished_ = false;
   }
 

@@ -8,7 +8,7 @@
 namespace loopgrid {
 namespace {
 
-[[noreturn]] void Fail(const std::string& file, const std::string& purpose) {
+[[noreturn]] void FailToLoad(const std::string& file, const std::string& purpose) {
   const char* reason = dlerror();
   throw std::runtime_error("cannot load " + file + ", which " + purpose + ": " +
                            (reason != nullptr ? reason : "unknown error"));
@@ -20,15 +20,15 @@ void* LoadFromModule(const std::string& file, const std::string& function,
                      const std::string& purpose) {
   // The dynamic linker looks where the program's RUNPATH says, and counts the users itself.
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (module == nullptr) Fail(file, purpose);
+  if (module == nullptr) FailToLoad(file, purpose);
   const auto* version = static_cast<const char*>(dlsym(module, "loopgrid_module_version"));
-  if (version == nullptr) Fail(file, purpose);
+  if (version == nullptr) FailToLoad(file, purpose);
   if (std::strcmp(version, LOOPGRID_VERSION) != 0) {
     throw std::runtime_error("cannot load " + file + ", which " + purpose + ": it is of version " +
                              version + ", this program of version " LOOPGRID_VERSION);
   }
   void* address = dlsym(module, function.c_str());
-  if (address == nullptr) Fail(file, purpose);
+  if (address == nullptr) FailToLoad(file, purpose);
   return address;
 }
 

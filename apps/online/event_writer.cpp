@@ -15,7 +15,7 @@
 namespace loopgrid {
 namespace {
 
-[[noreturn]] void Fail(const std::string& path, const char* doing) {
+[[noreturn]] void FailAtEvents(const std::string& path, const char* doing) {
   const int reason = errno;
   throw Error(ErrorCode::kOutput,
               path + ": " + doing + ": " + std::generic_category().message(reason));
@@ -80,7 +80,7 @@ void AppendClosure(const Closure& closure, std::string* text) {
 
 EventWriter::EventWriter(const std::string& path)
     : path_(path == "-" ? "standard output" : path), output_(OpenOutput(path)) {
-  if (!output_) Fail(path_, "cannot open");
+  if (!output_) FailAtEvents(path_, "cannot open");
 }
 
 void EventWriter::Start(const OnlineOptions& options, const std::string& source,
@@ -148,7 +148,7 @@ void EventWriter::Flush() {
   while (!rest.empty()) {
     const ssize_t count = write(output_.get(), rest.data(), rest.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) Fail(path_, "cannot write");
+    if (count < 0) FailAtEvents(path_, "cannot write");
     rest.remove_prefix(static_cast<std::size_t>(count));
   }
   buffer_.clear();

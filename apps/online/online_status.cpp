@@ -15,7 +15,7 @@ void AddLatency(const LatencyHistogram& latency, JsonWriter* json) {
   json->EndObject();
 }
 
-void AddClosures(const OnlineStatus& status, JsonWriter* json) {
+void AddClosureCounts(const OnlineStatus& status, JsonWriter* json) {
   json->Key("closures").BeginObject();
   json->Field("tried", status.closures_tried).Field("accepted", status.closures_accepted);
   json->EndObject();
@@ -51,7 +51,7 @@ std::string FormatStatus(const OnlineStatus& status) {
   json.Field("scans", status.scans)
       .Field("nodes", status.nodes)
       .Field("constraints", status.constraints);
-  AddClosures(status, &json);
+  AddClosureCounts(status, &json);
   json.Field("unmatched", status.unmatched).Field("localized", status.localized);
   AddLatency(status.latency, &json);
   json.Field("lines", status.log.lines).Field("malformed", status.log.malformed);

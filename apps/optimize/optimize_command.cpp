@@ -45,7 +45,6 @@ std::vector<std::string> WantedOutputs(const OptimizeOptions& options) {
 }
 
 void RequireGraphToStay(const OptimizeOptions& options) {
-  RequireOtherThanInput("--out", options.out, options.graph);
   RequireOtherThanInput("--picture", options.picture, options.graph);
   RequireOtherThanInput("--trace", options.trace, options.graph);
   RequireOtherThanInput("--marginals", options.marginals, options.graph);

@@ -151,7 +151,7 @@ void AddCertificate(const OptimizeReport& report, JsonWriter* json) {
   json->EndObject();
 }
 
-void AddTimings(const OptimizeReport& report, JsonWriter* json) {
+void AddOptimizeTimings(const OptimizeReport& report, JsonWriter* json) {
   json->Key("timings").BeginObject();
   json->Field("total_s", report.total_seconds)
       .Field("reading_s", report.reading_seconds)
@@ -285,7 +285,7 @@ std::string FormatOptimizeJson(const OptimizeReport& report) {
     json.Field("constraints", report.robust).Field("outliers", report.outliers).EndObject();
   }
   json.Field("files", report.files);
-  AddTimings(report, &json);
+  AddOptimizeTimings(report, &json);
   json.EndObject();
   return json.Take() + '\n';
 }

@@ -1,13 +1,17 @@
 #include "apps/output/json_reader.h"
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "backend/base/error.h"
 
 namespace loopgrid {
 
 JsonMembers::JsonMembers(const std::string& path) : path_(path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) ThrowDamaged();
   std::ifstream stream(path);
   const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
   if (!json.is_object()) ThrowDamaged();

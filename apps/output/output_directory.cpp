@@ -20,12 +20,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStagingPrefix = ".loopgrid-unfinished-";
 
-[[noreturn]] void Fail(const fs::path& path, const std::string& what) {
+[[noreturn]] void FailToWrite(const fs::path& path, const std::string& what) {
   throw Error(ErrorCode::kOutput, fmt::format("{}: {}", path.string(), what));
 }
 
-[[noreturn]] void Fail(const fs::path& path, const std::error_code& error) {
-  Fail(path, error.message());
+[[noreturn]] void FailToWrite(const fs::path& path, const std::error_code& error) {
+  FailToWrite(path, error.message());
 }
 
 }  // namespace
@@ -42,20 +42,20 @@ void OutputDirectory::Prepare() {
   CheckPlaces();
   std::string pattern = (directory_ / kStagingPrefix).string() + "XXXXXX";
   if (mkdtemp(pattern.data()) == nullptr) {
-    Fail(directory_, std::error_code(errno, std::generic_category()));
+    FailToWrite(directory_, std::error_code(errno, std::generic_category()));
   }
   staging_ = pattern;
 }
 
 void OutputDirectory::CreateDirectories() {
-  if (directory_.empty()) Fail("--out", "the name is empty");
+  if (directory_.empty()) FailToWrite("--out", "the name is empty");
   fs::path path;
   for (const fs::path& part : directory_) {
     path /= part;
     std::error_code error;
     if (fs::is_directory(path, error)) continue;
-    if (fs::exists(path, error)) Fail(path, "is not a directory");
-    if (!fs::create_directory(path, error)) Fail(path, error);
+    if (fs::exists(path, error)) FailToWrite(path, "is not a directory");
+    if (!fs::create_directory(path, error)) FailToWrite(path, error);
     created_.push_back(path);
   }
 }
@@ -82,7 +82,7 @@ void OutputDirectory::CheckPlaces() const {
   for (const std::string& name : names_) {
     std::error_code error;
     if (fs::is_directory(directory_ / name, error)) {
-      Fail(directory_ / name, "is a directory, and a file of this name is to be written");
+      FailToWrite(directory_ / name, "is a directory, and a file of this name is to be written");
     }
   }
 }
@@ -110,10 +110,10 @@ void OutputDirectory::Commit() {
   std::error_code error;
   for (const std::string& name : names_) {
     if (left_out_.contains(name) || fs::is_regular_file(staging_ / name, error)) continue;
-    Fail(directory_ / name, "was not written");
+    FailToWrite(directory_ / name, "was not written");
   }
   const fs::path old = staging_ / "old";
-  if (!fs::create_directory(old, error)) Fail(directory_, error);
+  if (!fs::create_directory(old, error)) FailToWrite(directory_, error);
   std::vector<KeptFile> kept;
   try {
     for (const std::string& name : names_) {
@@ -135,7 +135,7 @@ void OutputDirectory::MoveIntoPlace(const std::string& name, const fs::path& pla
   } else {
     fs::rename(staging_ / name, place, error);
   }
-  if (error) Fail(place, error);
+  if (error) FailToWrite(place, error);
 }
 
 void OutputDirectory::Discard() noexcept {

@@ -20,7 +20,7 @@ std::string ShortName(const std::string& path) {
 }
 
 /// The file's name without its folder, unless another one has the same.
-std::string NameOf(const std::string& path, const std::vector<std::string>& paths) {
+std::string CurveName(const std::string& path, const std::vector<std::string>& paths) {
   const std::string name = ShortName(path);
   const auto same = std::count_if(paths.begin(), paths.end(), [&name](const std::string& other) {
     return ShortName(other) == name;
@@ -31,8 +31,8 @@ std::string NameOf(const std::string& path, const std::vector<std::string>& path
 Curve ReadCurve(const std::string& path, const std::vector<std::string>& paths) {
   Curve curve{"", ReadTraceCsv(path)};
   const Eigen::Vector2d& last = curve.points.back();
-  curve.name = fmt::format("{}: F = {:.6g} after {:.6g} iterations", NameOf(path, paths), last.y(),
-                           last.x());
+  curve.name = fmt::format("{}: F = {:.6g} after {:.6g} iterations", CurveName(path, paths),
+                           last.y(), last.x());
   return curve;
 }
 

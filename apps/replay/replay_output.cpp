@@ -18,7 +18,7 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-std::string SystemReason() { return std::generic_category().message(errno); }
+std::string ReasonOf() { return std::generic_category().message(errno); }
 
 Descriptor ConnectTo(const HostPort& address) {
   asio::io_context io;
@@ -50,18 +50,18 @@ void ReplayOutput::Write(std::string_view bytes) const {
     if (count >= 0) {
       bytes.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
-      Fail("cannot write: " + SystemReason());
+      Fail("cannot write: " + ReasonOf());
     }
   }
 }
 
 void ReplayOutput::Finish() const {
   if (!socket_) return;
-  if (shutdown(descriptor_, SHUT_WR) != 0) Fail("cannot write: " + SystemReason());
+  if (shutdown(descriptor_, SHUT_WR) != 0) Fail("cannot write: " + ReasonOf());
   std::array<char, 4096> ignored;
   ssize_t count = 0;
   while ((count = recv(descriptor_, ignored.data(), ignored.size(), 0)) != 0) {
-    if (count < 0 && errno != EINTR) Fail("the receiver did not take all of it: " + SystemReason());
+    if (count < 0 && errno != EINTR) Fail("the receiver did not take all of it: " + ReasonOf());
   }
 }
 

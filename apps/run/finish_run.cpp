@@ -11,7 +11,7 @@
 namespace loopgrid {
 namespace {
 
-void Describe(const Slam& slam, RunReport* report) {
+void DescribeRun(const Slam& slam, RunReport* report) {
   report->slam = slam.statistics();
   report->nodes = static_cast<int>(slam.graph().poses.size());
   report->constraints = static_cast<int>(slam.graph().constraints.size());
@@ -36,7 +36,7 @@ void FinishRun(const Stopwatch& stopwatch, Slam* slam, OutputDirectory* outputs,
                RunReport* report) {
   bar->ShowStage("optimising the graph");
   slam->Finish();
-  Describe(*slam, report);
+  DescribeRun(*slam, report);
 
   bar->ShowStage("drawing and writing");
   WriteRunOutputs(report->options, *slam, outputs, report);

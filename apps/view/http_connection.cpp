@@ -1,5 +1,7 @@
 #include "apps/view/http_connection.h"
 
+#include "backend/base/stopwatch.h"
+
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -35,10 +37,6 @@ constexpr auto kLinger = std::chrono::seconds(2);
 
 beast::string_view ToBeast(std::string_view text) { return {text.data(), text.size()}; }
 std::string_view ToStd(beast::string_view text) { return {text.data(), text.size()}; }
-
-Clock::duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 // The system takes only this much more than the network carries, so that a client that reads slowly
 // makes its connection writable again after every few kilobytes.
@@ -114,7 +112,7 @@ void Connection::ReadRequest() {
   parser_.emplace();
   parser_->header_limit(kMaxHeader);
   // One time limit for the whole header: a client that sends it byte by byte gets no more.
-  stream_.expires_after(Seconds(hub_->options().request_timeout));
+  stream_.expires_after(ClockDuration(hub_->options().request_timeout));
   http::async_read_header(
       stream_, buffer_, *parser_,
       [self = shared_from_this()](error_code error, std::size_t) { self->HandleRequest(error); });
@@ -174,7 +172,7 @@ void Connection::Send(Reply reply) {
 
 // The time limit is for each piece: a client may take as long as it likes while it takes something.
 void Connection::SendPiece(std::shared_ptr<Response> response) {
-  stream_.expires_after(Seconds(hub_->options().write_timeout));
+  stream_.expires_after(ClockDuration(hub_->options().write_timeout));
   auto& serializer = response->serializer;
   http::async_write_some(stream_, serializer,
                          [self = shared_from_this(), response = std::move(response)](
@@ -208,7 +206,7 @@ void Connection::FollowEvents(const Reply& reply) {
   auto response = std::make_shared<http::response<http::empty_body>>();
   SetHeader(reply, response.get());
   response->keep_alive(false);
-  stream_.expires_after(Seconds(hub_->options().write_timeout));
+  stream_.expires_after(ClockDuration(hub_->options().write_timeout));
   auto serializer = std::make_shared<http::response_serializer<http::empty_body>>(*response);
   http::async_write_header(
       stream_, *serializer,
@@ -259,7 +257,7 @@ void Connection::WriteNews() {
 }
 
 void Connection::WritePieceOfNews() {
-  stream_.expires_after(Seconds(hub_->options().write_timeout));
+  stream_.expires_after(ClockDuration(hub_->options().write_timeout));
   stream_.async_write_some(asio::buffer(*backlog_.front()) + written_bytes_,
                            [self = shared_from_this()](error_code error, std::size_t n) {
                              if (error) return;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "backend/base/error.h"
+#include "backend/base/stopwatch.h"
 
 namespace loopgrid {
 namespace {
@@ -25,10 +26,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 // After so long without news, viewers get an empty comment, which finds those that are gone.
 constexpr auto kSilence = std::chrono::seconds(15);
-
-Clock::duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
 
 std::string HostInUrl(const asio::ip::address& address) {
   return address.is_v6() ? '[' + address.to_string() + ']' : address.to_string();
@@ -71,7 +68,8 @@ class HttpService::Impl : public HttpHub {
     std::unique_lock lock(mutex_);
     // A batch may be under way, and without the last news. The one after it has them all.
     const std::int64_t begun = batches_;
-    sent_.wait_for(lock, Seconds(seconds), [&] { return batches_ > begun + 1 && !has_backlog_; });
+    sent_.wait_for(lock, ClockDuration(seconds),
+                   [&] { return batches_ > begun + 1 && !has_backlog_; });
   }
 
   HttpCounters counters() const {
@@ -135,7 +133,7 @@ class HttpService::Impl : public HttpHub {
   }
 
   void ScheduleBatch() {
-    batch_timer_.expires_after(Seconds(options_.batch_interval));
+    batch_timer_.expires_after(ClockDuration(options_.batch_interval));
     batch_timer_.async_wait([this](error_code) {
       SendBatch();
       ScheduleBatch();

@@ -6,20 +6,10 @@
 
 #include "apps/net/host_port.h"
 #include "backend/base/error.h"
+#include "backend/base/option_check.h"
 #include "backend/base/parse_number.h"
 
 namespace loopgrid {
-namespace {
-
-template <typename Number>
-void RequireBetween(const char* field, Number value, Number low, Number high) {
-  if (value >= low && value <= high) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("{} is {}, expected {} to {}", field, value, low, high));
-}
-
-}  // namespace
-
 void ViewServerOptions::Validate() const {
   if (host.empty()) throw Error(ErrorCode::kUsage, "host is empty, expected an address to bind to");
   RequireBetween("port", port, 0, 65535);
@@ -27,7 +17,7 @@ void ViewServerOptions::Validate() const {
   RequireBetween("request_timeout", request_timeout, 0.01, 3600.0);
   RequireBetween("write_timeout", write_timeout, 0.01, 3600.0);
   RequireBetween("batch_interval", batch_interval, 0.001, 10.0);
-  RequireBetween("max_backlog", max_backlog, std::size_t{1}, std::size_t{1} << 30);
+  RequireBetween("max_backlog", static_cast<double>(max_backlog), 1.0, 1 << 30);
 }
 
 ViewServerOptions ParseViewAddress(std::string_view address) {

@@ -15,7 +15,7 @@ constexpr std::size_t kMaxPoses = 64;     // in one batch
 constexpr std::size_t kMaxRefused = 200;  // remembered
 constexpr double kMaxStep = 5.0;  // metres; a robot that is this far off begins a new session
 
-std::string Event(std::string_view name, std::string_view json) {
+std::string ServerSentEvent(std::string_view name, std::string_view json) {
   return fmt::format("event: {}\ndata: {}\n\n", name, json);
 }
 
@@ -213,11 +213,12 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
     nodes_moved_ = false;
   }
   if (nodes_told_ < nodes_.size()) {
-    text += Event("nodes", ObjectText([this](JsonWriter* json) { AddNodes(nodes_told_, json); }));
+    text += ServerSentEvent("nodes",
+                            ObjectText([this](JsonWriter* json) { AddNodes(nodes_told_, json); }));
     nodes_told_ = nodes_.size();
   }
   if (!poses_.empty()) {
-    text += Event("poses", ObjectWithArray("poses", poses_));
+    text += ServerSentEvent("poses", ObjectWithArray("poses", poses_));
   }
   if (!changed_closures_.empty()) {
     std::vector<std::string> changed;
@@ -225,16 +226,17 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
       const ShownClosure& closure = closures_.at(pair);
       changed.push_back(ClosureJson(closure.id, closure.record));
     }
-    text += Event("closures", ObjectWithArray("closures", changed));
+    text += ServerSentEvent("closures", ObjectWithArray("closures", changed));
   }
-  if (!poses_.empty() || !changed_closures_.empty()) text += Event("counters", CountersJson());
+  if (!poses_.empty() || !changed_closures_.empty())
+    text += ServerSentEvent("counters", CountersJson());
   poses_.clear();
   changed_closures_.clear();
   if (!tiles.empty())
-    text +=
-        Event("tiles",
-              ObjectText([&tiles](JsonWriter* json) { json->Key("tiles").Raw(TilesJson(tiles)); }));
-  if (ended_ && !end_told_) text += Event("end", "{}");
+    text += ServerSentEvent("tiles", ObjectText([&tiles](JsonWriter* json) {
+                              json->Key("tiles").Raw(TilesJson(tiles));
+                            }));
+  if (ended_ && !end_told_) text += ServerSentEvent("end", "{}");
   end_told_ = ended_;
   return text;
 }
@@ -255,7 +257,7 @@ std::string ViewState::Snapshot(const std::vector<TileVersion>& tiles) const {
     json->EndArray();
     json->Key("counters").Raw(CountersJson()).Key("tiles").Raw(TilesJson(tiles));
   });
-  return Event("state", text);
+  return ServerSentEvent("state", text);
 }
 
 }  // namespace loopgrid

@@ -15,7 +15,7 @@
 namespace loopgrid {
 namespace {
 
-constexpr unsigned kBufferSize = 1U << 16;
+constexpr unsigned kReadSize = 1U << 16;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& reason) {
   throw Error(ErrorCode::kInput, path + ": " + reason);
@@ -42,7 +42,7 @@ InputFile::InputFile(const std::string& path) : path_(path) {
     close(descriptor);
     Fail(path, "cannot open: out of memory");
   }
-  gzbuffer(file_.get(), kBufferSize);
+  gzbuffer(file_.get(), kReadSize);
 }
 
 std::size_t InputFile::ReadFromFile(char* bytes, std::size_t size) {

@@ -4,6 +4,12 @@
 
 namespace loopgrid {
 
+/// A time in seconds as the steady clock counts it.
+inline std::chrono::steady_clock::duration ClockDuration(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
+
 /// Wall time since it was made.
 class Stopwatch {
  public:

@@ -58,15 +58,15 @@ Matrix6d Transform(const Matrix6d& information, const Eigen::Matrix3d& J) {
 }
 
 template <typename Pose>
-Pose ReadPose(GraphLine* line);
+Pose ReadToroPose(GraphLine* line);
 
 template <>
-SE2 ReadPose<SE2>(GraphLine* line) {
+SE2 ReadToroPose<SE2>(GraphLine* line) {
   return SE2(line->Numbers<3>());
 }
 
 template <>
-SE3 ReadPose<SE3>(GraphLine* line) {
+SE3 ReadToroPose<SE3>(GraphLine* line) {
   const Eigen::Vector3d translation = line->Numbers<3>();
   return SE3(translation, FromRollPitchYaw(line->Numbers<3>()));
 }
@@ -86,19 +86,19 @@ Matrix6d ReadInformation<SE3>(GraphLine* line, const SE3& T_from_to) {
 }
 
 template <typename Pose>
-void ReadNode(GraphLine* line, GraphBuilder<Pose>* builder) {
+void ReadToroNode(GraphLine* line, GraphBuilder<Pose>* builder) {
   const std::int64_t id = line->Id();
-  const Pose pose = ReadPose<Pose>(line);
+  const Pose pose = ReadToroPose<Pose>(line);
   line->End();
   builder->AddNode({id, line->number()}, pose);
 }
 
 template <typename Pose>
-void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
+void ReadToroConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
   const std::int64_t from = line->Id();
   const std::int64_t to = line->Id();
   Constraint<Pose> constraint;
-  constraint.T_from_to = ReadPose<Pose>(line);
+  constraint.T_from_to = ReadToroPose<Pose>(line);
   constraint.information = ReadInformation<Pose>(line, constraint.T_from_to);
   line->End();
   line->RequireInformation(from, to, &constraint.information);
@@ -108,21 +108,21 @@ void ReadConstraint(GraphLine* line, GraphBuilder<Pose>* builder) {
 constexpr const char* kNode2 = "id x y theta";
 constexpr const char* kEdge2 = "from to x y theta Ixx Ixy Iyy Itt Ixt Iyt";
 
-constexpr std::array<GraphTag<SE2>, 4> kTags2 = {{
-    {"EDGE2", kEdge2, ReadConstraint<SE2>},
-    {"VERTEX2", kNode2, ReadNode<SE2>},
-    {"EDGE", kEdge2, ReadConstraint<SE2>},
-    {"VERTEX", kNode2, ReadNode<SE2>},
+constexpr std::array<GraphTag<SE2>, 4> kToroTags2 = {{
+    {"EDGE2", kEdge2, ReadToroConstraint<SE2>},
+    {"VERTEX2", kNode2, ReadToroNode<SE2>},
+    {"EDGE", kEdge2, ReadToroConstraint<SE2>},
+    {"VERTEX", kNode2, ReadToroNode<SE2>},
 }};
 
-constexpr std::array<GraphTag<SE3>, 2> kTags3 = {{
-    {"EDGE3", "from to x y z roll pitch yaw I11 I12 ... I66", ReadConstraint<SE3>},
-    {"VERTEX3", "id x y z roll pitch yaw", ReadNode<SE3>},
+constexpr std::array<GraphTag<SE3>, 2> kToroTags3 = {{
+    {"EDGE3", "from to x y z roll pitch yaw I11 I12 ... I66", ReadToroConstraint<SE3>},
+    {"VERTEX3", "id x y z roll pitch yaw", ReadToroNode<SE3>},
 }};
 
-void Append(const SE2& pose, GraphText* text) { text->Numbers(pose.coordinates()); }
+void AppendToro(const SE2& pose, GraphText* text) { text->Numbers(pose.coordinates()); }
 
-void Append(const SE3& pose, GraphText* text) {
+void AppendToro(const SE3& pose, GraphText* text) {
   text->Numbers(pose.translation());
   text->Numbers(RollPitchYaw(pose.quaternion()));
 }
@@ -141,12 +141,12 @@ void AppendInformation(const Constraint<SE3>& constraint, GraphText* text) {
 
 template <>
 std::span<const GraphTag<SE2>> ToroTags<SE2>() {
-  return kTags2;
+  return kToroTags2;
 }
 
 template <>
 std::span<const GraphTag<SE3>> ToroTags<SE3>() {
-  return kTags3;
+  return kToroTags3;
 }
 
 template <typename Pose>
@@ -156,13 +156,13 @@ std::string FormatToro(const PoseGraph<Pose>& graph, const GraphIds& ids) {
   GraphText text;
   for (std::size_t node = 0; node < graph.poses.size(); ++node) {
     text.Begin(kPlanar ? "VERTEX2" : "VERTEX3", {names.node(node)});
-    Append(graph.poses[node], &text);
+    AppendToro(graph.poses[node], &text);
   }
   for (int node : graph.fixed) text.Begin("FIX", {names.node(node)});
   for (const Constraint<Pose>& constraint : graph.constraints) {
     text.Begin(kPlanar ? "EDGE2" : "EDGE3",
                {names.node(constraint.from), names.node(constraint.to)});
-    Append(constraint.T_from_to, &text);
+    AppendToro(constraint.T_from_to, &text);
     AppendInformation(constraint, &text);
   }
   return std::move(text).Finish();

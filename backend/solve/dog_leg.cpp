@@ -1,19 +1,21 @@
 #include "backend/solve/dog_leg.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "backend/solve/dog_leg_path.h"
 
 namespace loopgrid {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kSmallestRadius = 1e-12;
 
 // Of the Hessian's diagonal.
 constexpr double kFirstDamping = 1e-5;
-constexpr double kLargestDamping = 1e10;
-constexpr double kDampingFactor = 10.0;
+constexpr double kLargestDogLegDamping = 1e10;
+constexpr double kDogLegDampingFactor = 10.0;
 
 }  // namespace
 
@@ -21,8 +23,8 @@ template <typename Pose>
 std::optional<Termination> DogLeg<Pose>::MakeStep(Descent<Pose>* descent) {
   Linearization<Pose>& linearization = descent->linearization();
   while (linearization.Factorize(damping_) == Definiteness::kIndefinite) {
-    damping_ = std::max(kFirstDamping, damping_ * kDampingFactor);
-    if (damping_ > kLargestDamping) return Termination::kIndefinite;
+    damping_ = std::max(kFirstDamping, damping_ * kDogLegDampingFactor);
+    if (damping_ > kLargestDogLegDamping) return Termination::kIndefinite;
   }
   const Eigen::VectorXd& b = linearization.gradient();
   const Eigen::VectorXd newton = linearization.Step();
@@ -40,9 +42,10 @@ std::optional<Termination> DogLeg<Pose>::MakeStep(Descent<Pose>* descent) {
     const Trial trial = descent->TryStep(dx, promised);
     if (trial.kind == Trial::Kind::kNegligible) return Termination::kStalled;
     const bool is_taken = trial.kind == Trial::Kind::kTaken;
-    radius_ = NextRadius(radius_, path.Length(dx), is_taken ? trial.gain : -kInfinity);
+    radius_ = NextRadius(radius_, path.Length(dx), is_taken ? trial.gain : -kUnbounded);
+    if (!is_taken && !std::isfinite(radius_)) break;  // the step's length overflows
     if (!is_taken) continue;
-    damping_ /= kDampingFactor;
+    damping_ /= kDogLegDampingFactor;
     if (damping_ < kFirstDamping) damping_ = 0.0;
     return std::nullopt;
   }

@@ -69,6 +69,7 @@ OptimizerResult MinimizeGraduated(const RobustLoss& loss, const MinimizeStage& m
   Stages stages(minimize);
   stages.Run({LossKind::kQuadratic, loss.width}, StageGoal::kFollow);
   double width = std::sqrt(2.0 * LargestRobustChi2(*graph));
+  if (!std::isfinite(width)) width = 0.0;  // F overflows: no width is wide enough to begin with
   for (; width > loss.width && !stages.is_over(); width /= std::sqrt(kGraduation)) {
     stages.Run({LossKind::kGemanMcClure, width}, StageGoal::kFollow);
   }

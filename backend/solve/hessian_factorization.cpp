@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "backend/base/index.h"
 #include "backend/graph/parametrization.h"
 
 namespace loopgrid {
 namespace {
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
-
 /// A^T * Omega * B.
 template <int kRows, int kDof>
-Eigen::Matrix<DoubleDouble, kDof, kDof> Product(const Eigen::Matrix<double, kRows, kDof>& A,
-                                                const Eigen::Matrix<double, kRows, kRows>& Omega,
-                                                const Eigen::Matrix<double, kRows, kDof>& B) {
+Eigen::Matrix<DoubleDouble, kDof, kDof> HessianProduct(
+    const Eigen::Matrix<double, kRows, kDof>& A, const Eigen::Matrix<double, kRows, kRows>& Omega,
+    const Eigen::Matrix<double, kRows, kDof>& B) {
   Eigen::Matrix<DoubleDouble, kDof, kDof> product;
   for (int j = 0; j < kDof; ++j) {
     Eigen::Matrix<DoubleDouble, kRows, 1> weighted;
@@ -48,13 +47,15 @@ class HessianSum {
   void Add(int first, int second, const Eigen::Matrix<double, kRows, kDof>& J_first,
            const Eigen::Matrix<double, kRows, kDof>& J_second,
            const Eigen::Matrix<double, kRows, kRows>& Omega) {
-    if (first >= 0) sum_.diagonal(first) += Product(J_first, Omega, J_first);
-    if (second >= 0) sum_.diagonal(second) += Product(J_second, Omega, J_second);
+    if (first >= 0) sum_.diagonal(first) += HessianProduct(J_first, Omega, J_first);
+    if (second >= 0) sum_.diagonal(second) += HessianProduct(J_second, Omega, J_second);
     if (first < 0 || second < 0) return;
     if (first < second) {
-      sum_.off_diagonal(sum_.FindOrAddBlock(first, second)) += Product(J_first, Omega, J_second);
+      sum_.off_diagonal(sum_.FindOrAddBlock(first, second)) +=
+          HessianProduct(J_first, Omega, J_second);
     } else {
-      sum_.off_diagonal(sum_.FindOrAddBlock(second, first)) += Product(J_second, Omega, J_first);
+      sum_.off_diagonal(sum_.FindOrAddBlock(second, first)) +=
+          HessianProduct(J_second, Omega, J_first);
     }
   }
 
@@ -80,7 +81,7 @@ SymmetricBlockMatrix<Pose::kDof, DoubleDouble> ExactHessian(
   HessianSum<kDof> sum(equations.hessian());
   for (const Constraint<Pose>& c : graph.constraints) {
     const LinearizedConstraint<Pose> linear =
-        Linearize(graph.poses[Index(c.from)], graph.poses[Index(c.to)], c.T_from_to,
+        Linearize(graph.poses[ToIndex(c.from)], graph.poses[ToIndex(c.to)], c.T_from_to,
                   objective.parametrization);
     const double weight = Weight(c, objective.loss, linear.error.dot(c.information * linear.error));
     sum.template Add<kDof>(equations.variable(c.from), equations.variable(c.to), linear.J_from,
@@ -88,7 +89,7 @@ SymmetricBlockMatrix<Pose::kDof, DoubleDouble> ExactHessian(
   }
   for (const LandmarkObservation<Pose>& o : graph.observations) {
     const LinearizedObservation<Pose> linear =
-        Linearize(graph.poses[Index(o.node)], graph.landmarks[Index(o.landmark)], o.p_node,
+        Linearize(graph.poses[ToIndex(o.node)], graph.landmarks[ToIndex(o.landmark)], o.p_node,
                   objective.parametrization);
     const double weight = Weight(o, objective.loss, linear.error.dot(o.information * linear.error));
     Eigen::Matrix<double, kPoint, kDof> J_landmark = Eigen::Matrix<double, kPoint, kDof>::Zero();
@@ -112,32 +113,12 @@ Definiteness FactorizeHessian(const PoseGraph<Pose>& graph, const Objective& obj
   return factor->FactorizeExactly(ExactHessian(graph, objective, equations), added);
 }
 
-template <int kDof>
-bool IsGoodForCovariances(const SparseCholesky<kDof>& factor) {
-  constexpr double kMostNoise = 1e-2;
-  return factor.LargestNoise() <= kMostNoise;
-}
-
-template <typename Pose>
-Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph, const Objective& objective,
-                                     const NormalEquations<Pose>& equations,
-                                     SparseCholesky<Pose::kDof>* factor) {
-  if (factor->Factorize(equations.hessian()) && IsGoodForCovariances(*factor)) {
-    return Definiteness::kDefinite;
-  }
-  return factor->FactorizeExactly(ExactHessian(graph, objective, equations));
-}
-
 #define LOOPGRID_INSTANTIATE(Pose)                                                             \
   template SymmetricBlockMatrix<Pose::kDof, DoubleDouble> ExactHessian(                        \
       const PoseGraph<Pose>&, const Objective&, const NormalEquations<Pose>&);                 \
   template Definiteness FactorizeHessian(const PoseGraph<Pose>&, const Objective&,             \
                                          const NormalEquations<Pose>&, const Eigen::VectorXd&, \
-                                         SparseCholesky<Pose::kDof>*);                         \
-  template bool IsGoodForCovariances(const SparseCholesky<Pose::kDof>&);                       \
-  template Definiteness FactorizeForCovariances(const PoseGraph<Pose>&, const Objective&,      \
-                                                const NormalEquations<Pose>&,                  \
-                                                SparseCholesky<Pose::kDof>*);
+                                         SparseCholesky<Pose::kDof>*);
 LOOPGRID_INSTANTIATE(SE2)
 LOOPGRID_INSTANTIATE(SE3)
 #undef LOOPGRID_INSTANTIATE

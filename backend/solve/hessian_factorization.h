@@ -29,16 +29,4 @@ template <typename Pose>
                                             const Eigen::VectorXd& added,
                                             SparseCholesky<Pose::kDof>* factor);
 
-/// The same without damping, for covariances, which an optimiser's next step does not correct: with
-/// twice the digits unless double precision gives them to a hundredth.
-template <typename Pose>
-[[nodiscard]] Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph,
-                                                   const Objective& objective,
-                                                   const NormalEquations<Pose>& equations,
-                                                   SparseCholesky<Pose::kDof>* factor);
-
-/// Whether a factor that was made in double precision is good enough for that.
-template <int kDof>
-bool IsGoodForCovariances(const SparseCholesky<kDof>& factor);
-
 }  // namespace loopgrid

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "backend/base/index.h"
 #include "backend/graph/parametrization.h"
 #include "backend/solve/hessian_factorization.h"
 
@@ -15,7 +16,9 @@ constexpr double kSmallestScale = 1e-9;
 /// most.
 constexpr double kFreeDamping = 1e-14;
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+/// A pivot that is so small a share of its diagonal entry has kept five digits in double precision.
+/// A step of the optimiser that is less exact is corrected by the next one; covariances are not.
+constexpr double kPivotForCovariances = 1e-11;
 
 }  // namespace
 
@@ -55,9 +58,12 @@ Definiteness Linearization<Pose>::Factorize(double damping) {
 
 template <typename Pose>
 Definiteness Linearization<Pose>::FactorizeForCovariances(const PoseGraph<Pose>& graph) {
-  if (has_undamped_factor_ && IsGoodForCovariances(factor_)) return Definiteness::kDefinite;
-  const Definiteness result =
-      loopgrid::FactorizeForCovariances(graph, objective_, equations_, &factor_);
+  const auto keeps_digits = [this] { return factor_.smallest_pivot() >= kPivotForCovariances; };
+  if (has_undamped_factor_ && keeps_digits()) return Definiteness::kDefinite;
+  Definiteness result = Definiteness::kDefinite;
+  if (!factor_.Factorize(equations_.hessian()) || !keeps_digits()) {
+    result = factor_.FactorizeExactly(ExactHessian(graph, objective_, equations_));
+  }
   has_undamped_factor_ = result == Definiteness::kDefinite;
   return result;
 }
@@ -78,14 +84,14 @@ void Linearization<Pose>::Move(const Eigen::VectorXd& dx, Parametrization parame
   for (int node = 0; node < static_cast<int>(graph->poses.size()); ++node) {
     const int variable = equations_.variable(node);
     if (variable < 0) continue;
-    Pose& pose = graph->poses[Index(node)];
+    Pose& pose = graph->poses[ToIndex(node)];
     pose = Increment<Pose>(pose, dx.segment<kDof>(kDof * variable), parametrization);
   }
   for (int landmark = 0; landmark < static_cast<int>(graph->landmarks.size()); ++landmark) {
     const int variable = equations_.landmark_variable(landmark);
     if (variable < 0) continue;
     constexpr int kPoint = Pose::Point::RowsAtCompileTime;
-    graph->landmarks[Index(landmark)] += dx.segment<kPoint>(kDof * variable);
+    graph->landmarks[ToIndex(landmark)] += dx.segment<kPoint>(kDof * variable);
   }
 }
 

@@ -35,8 +35,8 @@ class Linearization {
   /// weak for any other effect then keeps steps from going along them.
   [[nodiscard]] Definiteness Factorize(double damping);
 
-  /// Factorises H as well as covariances need it; at once if the factor is that of H already. The
-  /// graph is that of the last Linearize, or equal to it.
+  /// Factorises H, unless the factor is that of H already. The graph is that of the last Linearize,
+  /// or equal to it.
   [[nodiscard]] Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph);
 
   /// Whether the factor is that of H, positive definite and without damping, where it was

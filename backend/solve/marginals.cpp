@@ -12,14 +12,15 @@
 #include "backend/base/error.h"
 #include "backend/base/index.h"
 #include "backend/graph/constraint_error.h"
+#include "backend/solve/hessian_factorization.h"
 #include "backend/sparse/selected_inverse.h"
 
 namespace loopgrid {
 namespace {
 
-/// Where the terms of a variance are this many times the variance, their difference has lost half
-/// of the digits of a double.
-constexpr double kMostCancellation = 1e8;
+/// Where the terms of a variance are this many times the variance, their difference has lost six of
+/// the sixteen digits of a double, beside those that the condition of the Hessian costs the terms.
+constexpr double kMostCancellation = 1e6;
 
 /// Whether variances that are differences of terms of these sizes have kept enough digits.
 template <int kSize>
@@ -62,10 +63,13 @@ std::optional<NodesAndLandmarks<Pose>> CovariancesWithHeld(PoseGraph<Pose> graph
   graph.fixed.push_back(node);
   NormalEquations<Pose> equations;
   equations.SetStructure(graph);
-  equations.Linearize(graph, {loss, Parametrization::kManifold});
+  const Objective objective{loss, Parametrization::kManifold};
+  equations.Linearize(graph, objective);
   SparseCholesky<Pose::kDof> factor;
   factor.Analyze(equations.hessian());
-  if (!factor.Factorize(equations.hessian())) return std::nullopt;
+  if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
+    return std::nullopt;
+  }
   const Marginals<Pose> marginals(graph, equations, factor, loss);
   return NodesAndLandmarks<Pose>{marginals.covariances(), marginals.landmark_covariances()};
 }
@@ -224,10 +228,13 @@ std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovaria
   if (node < 0 || ToIndex(node) >= graph.poses.size()) throw NoSuchNode(node, graph.poses.size());
   NormalEquations<Pose> equations;
   equations.SetStructure(graph);
-  equations.Linearize(graph, {loss, Parametrization::kManifold});
+  const Objective objective{loss, Parametrization::kManifold};
+  equations.Linearize(graph, objective);
   SparseCholesky<Pose::kDof> factor;
   factor.Analyze(equations.hessian());
-  if (!factor.Factorize(equations.hessian())) return std::nullopt;
+  if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
+    return std::nullopt;
+  }
   return Marginals<Pose>(graph, equations, factor, loss).RelativeTo(node);
 }
 

@@ -1,5 +1,7 @@
 #include "backend/solve/normal_equations.h"
 
+#include "backend/base/index.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -11,8 +13,6 @@ namespace {
 constexpr std::size_t kTermsAThread = 32;
 /// Handing out work to other threads takes as long as some hundreds of terms.
 constexpr std::size_t kTermsAHelper = 2048;
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 LossValue Evaluate(const RobustLoss& loss, bool robust, double chi2) {
   return robust ? loss.Evaluate(chi2) : LossValue{chi2, 1.0};
@@ -41,7 +41,7 @@ double TotalError(const PoseGraph<Pose>& graph, std::span<const Constraint<Pose>
   double total = 0.0;
   for (const Constraint<Pose>& c : constraints) {
     const typename Pose::Tangent error =
-        ConstraintError(graph.poses[Index(c.from)], graph.poses[Index(c.to)], c.T_from_to,
+        ConstraintError(graph.poses[ToIndex(c.from)], graph.poses[ToIndex(c.to)], c.T_from_to,
                         objective.parametrization);
     total += Evaluate(objective.loss, c.robust, error.dot(c.information * error)).cost;
   }
@@ -134,9 +134,9 @@ template <typename Pose>
 void NormalEquations<Pose>::LinearizeTerm(const PoseGraph<Pose>& graph,
                                           const Constraint<Pose>& constraint, const Link& link,
                                           const Objective& objective, Term* term) const {
-  const LinearizedConstraint<Pose> linear =
-      loopgrid::Linearize(graph.poses[Index(constraint.from)], graph.poses[Index(constraint.to)],
-                          constraint.T_from_to, objective.parametrization);
+  const LinearizedConstraint<Pose> linear = loopgrid::Linearize(
+      graph.poses[ToIndex(constraint.from)], graph.poses[ToIndex(constraint.to)],
+      constraint.T_from_to, objective.parametrization);
   const typename Pose::Tangent information_error = constraint.information * linear.error;
   const LossValue value =
       Evaluate(objective.loss, constraint.robust, linear.error.dot(information_error));
@@ -164,7 +164,7 @@ void NormalEquations<Pose>::LinearizeTerm(const PoseGraph<Pose>& graph,
                                           const Link& link, const Objective& objective,
                                           Term* term) const {
   const LinearizedObservation<Pose> linear = loopgrid::Linearize(
-      graph.poses[Index(observation.node)], graph.landmarks[Index(observation.landmark)],
+      graph.poses[ToIndex(observation.node)], graph.landmarks[ToIndex(observation.landmark)],
       observation.p_node, objective.parametrization);
   const typename Pose::Point information_error = observation.information * linear.error;
   const LossValue value =

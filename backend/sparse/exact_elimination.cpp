@@ -7,7 +7,7 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Subtracts column * column^T / pivot from what is right of the column. If the pivot is wrong by
 /// noise[0], what is left at row j is wrong by (column[j] / pivot)^2 of that.
@@ -35,7 +35,7 @@ Definiteness EliminateExactly(DoubleDouble* F, int ld, int size, int pivots, dou
       for (int i = 1; i < rows; ++i) panel[i] = F[i].high / root;
       SubtractColumn(F, ld, rows, noise);
     } else if (pivot >= -*noise) {
-      panel[0] = kInfinity;
+      panel[0] = kNoBound;
       for (int i = 1; i < rows; ++i) panel[i] = 0.0;
       result = Definiteness::kSemidefinite;
     } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "backend/base/index.h"
 #include "backend/sparse/frontal_kernels.h"
 #include "backend/sparse/ordering.h"
 
@@ -16,10 +17,6 @@ constexpr double kWorthOrdering = 1.2;
 /// Multiplications in the factorisation per column and end of an off-diagonal block from which on
 /// the better order of nested dissection pays for its own time, within a few factorisations.
 constexpr double kWorthDissecting = 1e4;
-
-std::size_t PaddedArea(int rows, int cols) {
-  return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
-}
 
 /// Entries of the factor per block of the matrix.
 double Fill(const SymbolicFactor& factor, std::size_t blocks) {
@@ -56,13 +53,13 @@ bool FrontPlan::KeepOrder(int cols, std::span<const BlockPlace> places) {
 
 void FrontPlan::ListChildren() {
   const int count = structure_.supernode_count();
-  last_child_.assign(Index(count), -1);
-  sibling_.assign(Index(count), -1);
+  last_child_.assign(ToIndex(count), -1);
+  sibling_.assign(ToIndex(count), -1);
   for (int s = 0; s < count; ++s) {
-    const int parent = structure_.parent[Index(s)];
+    const int parent = structure_.parent[ToIndex(s)];
     if (parent == -1) continue;
-    sibling_[Index(s)] = last_child_[Index(parent)];
-    last_child_[Index(parent)] = s;
+    sibling_[ToIndex(s)] = last_child_[ToIndex(parent)];
+    last_child_[ToIndex(parent)] = s;
   }
 }
 
@@ -70,47 +67,47 @@ void FrontPlan::PlaceSources(std::span<const BlockPlace> places) {
   const int count = structure_.supernode_count();
   std::vector<int> supernode_of(structure_.order.size());
   for (int s = 0; s < count; ++s) {
-    for (int k = structure_.first_column[Index(s)]; k < structure_.first_column[Index(s) + 1];
+    for (int k = structure_.first_column[ToIndex(s)]; k < structure_.first_column[ToIndex(s) + 1];
          ++k) {
-      supernode_of[Index(k)] = s;
+      supernode_of[ToIndex(k)] = s;
     }
   }
   // Counting sort of the blocks by the supernode that eliminates their column.
-  first_source_.assign(Index(count) + 1, 0);
+  first_source_.assign(ToIndex(count) + 1, 0);
   const auto supernode_at = [&](const BlockPlace& place) {
-    return supernode_of[Index(
-        std::min(structure_.position[Index(place.row)], structure_.position[Index(place.col)]))];
+    return supernode_of[ToIndex(std::min(structure_.position[ToIndex(place.row)],
+                                         structure_.position[ToIndex(place.col)]))];
   };
-  for (const BlockPlace& place : places) ++first_source_[Index(supernode_at(place)) + 1];
-  for (int s = 0; s < count; ++s) first_source_[Index(s) + 1] += first_source_[Index(s)];
+  for (const BlockPlace& place : places) ++first_source_[ToIndex(supernode_at(place)) + 1];
+  for (int s = 0; s < count; ++s) first_source_[ToIndex(s) + 1] += first_source_[ToIndex(s)];
   sources_.resize(places.size());
   std::vector<std::size_t> next(first_source_.begin(), first_source_.end() - 1);
   for (int block = 0; block < static_cast<int>(places.size()); ++block) {
-    const BlockPlace& place = places[Index(block)];
-    const int a = structure_.position[Index(place.row)];
-    const int b = structure_.position[Index(place.col)];
+    const BlockPlace& place = places[ToIndex(block)];
+    const int a = structure_.position[ToIndex(place.row)];
+    const int b = structure_.position[ToIndex(place.col)];
     const int s = supernode_at(place);
-    sources_[next[Index(s)]++] = {block, structure_.PositionInFront(s, std::max(a, b)),
-                                  std::min(a, b) - structure_.first_column[Index(s)], a < b};
+    sources_[next[ToIndex(s)]++] = {block, structure_.PositionInFront(s, std::max(a, b)),
+                                    std::min(a, b) - structure_.first_column[ToIndex(s)], a < b};
   }
 }
 
 void FrontPlan::PlaceMemory() {
   const int count = structure_.supernode_count();
-  panel_start_.assign(Index(count) + 1, 0);
-  update_start_.assign(Index(count), 0);
+  panel_start_.assign(ToIndex(count) + 1, 0);
+  update_start_.assign(ToIndex(count), 0);
   updates_size_ = 0;
   largest_front_ = 0;
   std::size_t stack_top = 0;
   for (int s = 0; s < count; ++s) {
     const int size = front_size(s);
-    panel_start_[Index(s) + 1] = panel_start_[Index(s)] + PaddedArea(size, pivots(s));
+    panel_start_[ToIndex(s) + 1] = panel_start_[ToIndex(s)] + PaddedArea(size, pivots(s));
     largest_front_ = std::max(largest_front_, size);
     for (int child = last_child(s); child != -1; child = sibling(child)) {
-      stack_top = update_start_[Index(child)];
+      stack_top = update_start_[ToIndex(child)];
     }
     const int below = size - pivots(s);
-    update_start_[Index(s)] = stack_top;
+    update_start_[ToIndex(s)] = stack_top;
     stack_top += PaddedArea(below, below);
     updates_size_ = std::max(updates_size_, stack_top);
   }

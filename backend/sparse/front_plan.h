@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "backend/base/index.h"
 #include "backend/sparse/symbolic_factor.h"
 #include "backend/sparse/symmetric_block_matrix.h"
 
@@ -34,25 +35,25 @@ class FrontPlan {
   const SymbolicFactor& structure() const { return structure_; }
 
   std::span<const Source> sources(int s) const {
-    return {sources_.data() + first_source_[Index(s)],
-            sources_.data() + first_source_[Index(s) + 1]};
+    return {sources_.data() + first_source_[ToIndex(s)],
+            sources_.data() + first_source_[ToIndex(s) + 1]};
   }
 
   /// The last child of a supernode in elimination order, and the sibling before a child; -1 if
   /// there is none.
-  int last_child(int s) const { return last_child_[Index(s)]; }
-  int sibling(int s) const { return sibling_[Index(s)]; }
+  int last_child(int s) const { return last_child_[ToIndex(s)]; }
+  int sibling(int s) const { return sibling_[ToIndex(s)]; }
 
   int front_size(int s) const { return dim_ * (structure_.columns(s) + structure_.row_count(s)); }
   int pivots(int s) const { return dim_ * structure_.columns(s); }
 
   /// Where the supernode's columns of the factor begin among all.
-  std::size_t panel_start(int s) const { return panel_start_[Index(s)]; }
+  std::size_t panel_start(int s) const { return panel_start_[ToIndex(s)]; }
   std::size_t panels_size() const { return panel_start_.back(); }
 
   /// Where the supernode's update, a Schur complement that waits for its parent, begins on the
   /// stack of them.
-  std::size_t update_start(int s) const { return update_start_[Index(s)]; }
+  std::size_t update_start(int s) const { return update_start_[ToIndex(s)]; }
   std::size_t updates_size() const { return updates_size_; }
 
   int largest_front() const { return largest_front_; }
@@ -62,8 +63,6 @@ class FrontPlan {
   void ListChildren();
   void PlaceSources(std::span<const BlockPlace> places);
   void PlaceMemory();
-
-  static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
   int dim_;
   SymbolicFactor structure_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace loopgrid {
 
 /// Dense kernels of the sparse Cholesky factorisation, for column-major matrices whose leading
@@ -11,6 +13,11 @@ inline constexpr int kRowAlignment = 4;
 /// The smallest leading dimension for this many rows.
 constexpr int PaddedRows(int rows) {
   return (rows + kRowAlignment - 1) / kRowAlignment * kRowAlignment;
+}
+
+/// Entries of a dense front of this size with padded columns.
+constexpr std::size_t PaddedArea(int rows, int cols) {
+  return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
 }
 
 /// Element (p, j) of a factor is `data[p * row_stride + j * col_stride]`: a matrix or a transpose.

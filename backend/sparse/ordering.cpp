@@ -1,5 +1,7 @@
 #include "backend/sparse/ordering.h"
 
+#include "backend/base/index.h"
+
 #include <amd.h>
 #include <metis.h>
 
@@ -15,8 +17,6 @@
 namespace loopgrid {
 namespace {
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
-
 /// The neighbours of each node, in one array: those of node i in [start[i], start[i + 1]).
 struct Neighbours {
   std::vector<int> start;
@@ -25,17 +25,17 @@ struct Neighbours {
 
 Neighbours ListNeighbours(int n, std::span<const BlockPlace> places) {
   Neighbours lists;
-  lists.start.assign(Index(n) + 1, 0);
+  lists.start.assign(ToIndex(n) + 1, 0);
   for (const BlockPlace& place : places) {
-    ++lists.start[Index(place.row) + 1];
-    ++lists.start[Index(place.col) + 1];
+    ++lists.start[ToIndex(place.row) + 1];
+    ++lists.start[ToIndex(place.col) + 1];
   }
   std::partial_sum(lists.start.begin(), lists.start.end(), lists.start.begin());
   lists.nodes.resize(2 * places.size());
   std::vector<int> next(lists.start.begin(), lists.start.end() - 1);
   for (const BlockPlace& place : places) {
-    lists.nodes[Index(next[Index(place.row)]++)] = place.col;
-    lists.nodes[Index(next[Index(place.col)]++)] = place.row;
+    lists.nodes[ToIndex(next[ToIndex(place.row)]++)] = place.col;
+    lists.nodes[ToIndex(next[ToIndex(place.col)]++)] = place.row;
   }
   return lists;
 }
@@ -60,7 +60,7 @@ class PrivateRandomSequence {
 }  // namespace
 
 std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
-  std::vector<int> order(Index(n));
+  std::vector<int> order(ToIndex(n));
   std::iota(order.begin(), order.end(), 0);
   if (places.empty()) return order;  // AMD and METIS take no graph without edges
   const Neighbours lists = ListNeighbours(n, places);
@@ -72,11 +72,11 @@ std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places) {
 
 std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places) {
   static_assert(sizeof(idx_t) == sizeof(int));
-  std::vector<int> order(Index(n));
+  std::vector<int> order(ToIndex(n));
   std::iota(order.begin(), order.end(), 0);
   if (places.empty()) return order;
   Neighbours lists = ListNeighbours(n, places);
-  std::vector<int> position(Index(n));
+  std::vector<int> position(ToIndex(n));
   const PrivateRandomSequence sequence;
   const int status = METIS_NodeND(&n, lists.start.data(), lists.nodes.data(), nullptr, nullptr,
                                   order.data(), position.data());

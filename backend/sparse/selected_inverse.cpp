@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "backend/base/index.h"
 #include "backend/sparse/frontal_kernels.h"
 
 namespace loopgrid {
 namespace {
-
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 /// A column-major matrix whose columns begin at multiples of the kernels' row alignment.
 class PaddedMatrix {
@@ -16,12 +15,14 @@ class PaddedMatrix {
   void Resize(int rows, int cols) {
     ld_ = PaddedRows(rows);
     // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows.
-    values_.assign(Index(ld_) * Index(cols) + kRowAlignment, 0.0);
+    values_.assign(ToIndex(ld_) * ToIndex(cols) + kRowAlignment, 0.0);
   }
 
   int ld() const { return ld_; }
   double* data() { return values_.data(); }
-  double& operator()(int row, int col) { return values_[Index(row) + Index(ld_) * Index(col)]; }
+  double& operator()(int row, int col) {
+    return values_[ToIndex(row) + ToIndex(ld_) * ToIndex(col)];
+  }
 
   /// This matrix as the right factor of a product.
   StridedMatrix AsFactor() const { return {values_.data(), 1, ld_}; }
@@ -124,21 +125,21 @@ class SelectedInversion {
 
  private:
   int Size(int s) const { return kDim * (structure_.columns(s) + structure_.row_count(s)); }
-  double* Front(int s) { return stack_.data() + start_[Index(s)]; }
+  double* Front(int s) { return stack_.data() + start_[ToIndex(s)]; }
 
   void PlaceFronts() {
     const int count = structure_.supernode_count();
-    start_.assign(Index(count), 0);
-    has_child_.assign(Index(count), false);
+    start_.assign(ToIndex(count), 0);
+    has_child_.assign(ToIndex(count), false);
     std::size_t stack_size = 0;
     const auto end_of = [this](int s) {
-      return start_[Index(s)] + Index(PaddedRows(Size(s))) * Index(Size(s));
+      return start_[ToIndex(s)] + ToIndex(PaddedRows(Size(s))) * ToIndex(Size(s));
     };
     for (int s = count - 1; s >= 0; --s) {
-      const int parent = structure_.parent[Index(s)];
+      const int parent = structure_.parent[ToIndex(s)];
       if (parent != -1) {
-        has_child_[Index(parent)] = true;
-        start_[Index(s)] = end_of(parent);
+        has_child_[ToIndex(parent)] = true;
+        start_[ToIndex(s)] = end_of(parent);
       }
       stack_size = std::max(stack_size, end_of(s));
     }
@@ -149,13 +150,13 @@ class SelectedInversion {
     const int size = Size(s);
     const int ld = PaddedRows(size);
     const int pivots = kDim * structure_.columns(s);
-    if (structure_.parent[Index(s)] != -1) {
+    if (structure_.parent[ToIndex(s)] != -1) {
       GatherFromParent(s, Front(s) + pivots + static_cast<std::ptrdiff_t>(pivots) * ld, ld);
     }
-    inverter_.Invert(factor_.panel(s), size, pivots, Front(s), ld, has_child_[Index(s)]);
+    inverter_.Invert(factor_.panel(s), size, pivots, Front(s), ld, has_child_[ToIndex(s)]);
     for (int k = 0; k < structure_.columns(s); ++k) {
       auto& block =
-          (*blocks)[Index(structure_.order[Index(structure_.first_column[Index(s)] + k)])];
+          (*blocks)[ToIndex(structure_.order[ToIndex(structure_.first_column[ToIndex(s)] + k)])];
       for (int j = 0; j < kDim; ++j) {
         for (int i = 0; i < kDim; ++i) block(i, j) = inverter_.own()(kDim * k + i, kDim * k + j);
       }
@@ -164,9 +165,9 @@ class SelectedInversion {
 
   /// Copies what the parent has over the rows of s.
   void GatherFromParent(int s, double* Z22, int ld) {
-    const int parent = structure_.parent[Index(s)];
+    const int parent = structure_.parent[ToIndex(s)];
     const std::ptrdiff_t parent_ld = PaddedRows(Size(parent));
-    const int* const positions = structure_.row_in_parent.data() + structure_.first_row[Index(s)];
+    const int* const positions = structure_.row_in_parent.data() + structure_.first_row[ToIndex(s)];
     const int count = structure_.row_count(s);
     for (int b = 0; b < count; ++b) {
       for (int j = 0; j < kDim; ++j, Z22 += ld) {

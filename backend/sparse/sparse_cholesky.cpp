@@ -4,6 +4,7 @@
 #include <cassert>
 #include <limits>
 
+#include "backend/base/index.h"
 #include "backend/sparse/frontal_kernels.h"
 
 namespace loopgrid {
@@ -19,13 +20,6 @@ constexpr double kSmallestPivot = 1e-13;
 /// far from the origin. This is the square of 1e-14.
 constexpr double kExactNoise = 1e-28;
 
-/// The same in double precision: a few units in the last place.
-constexpr double kNoise = 1e-15;
-
-std::size_t PaddedArea(int rows, int cols) {
-  return static_cast<std::size_t>(PaddedRows(rows)) * static_cast<std::size_t>(cols);
-}
-
 }  // namespace
 
 template <int kDim>
@@ -34,8 +28,8 @@ void SparseCholesky<kDim>::Analyze(const Matrix& H) {
   // Kernels read whole groups of rows, which may begin in mid-column: hence the extra rows. All of
   // it is written before it counts, so what a smaller matrix has left there may stay.
   values_.resize(plan_.panels_size() + kRowAlignment);
-  diagonal_.resize(Index(kDim * H.cols()));
-  solve_work_.resize(kMostLanes * Index(plan_.largest_front()));
+  diagonal_.resize(ToIndex(kDim * H.cols()));
+  solve_work_.resize(kMostLanes * ToIndex(plan_.largest_front()));
   MakeRoom(&work_);
 }
 
@@ -56,9 +50,9 @@ bool SparseCholesky<kDim>::Factorize(const Matrix& H, const Eigen::VectorXd& add
     const int pivots = plan_.pivots(s);
     Assemble(H, added, s, &work_.front);
     AddUpdates(s, &work_);
-    const double* const diagonal = &diagonal_[Index(kDim * structure.first_column[Index(s)])];
-    smallest_pivots_.resize(Index(pivots));
-    for (int i = 0; i < pivots; ++i) smallest_pivots_[Index(i)] = kSmallestPivot * diagonal[i];
+    const double* const diagonal = &diagonal_[ToIndex(kDim * structure.first_column[ToIndex(s)])];
+    smallest_pivots_.resize(ToIndex(pivots));
+    for (int i = 0; i < pivots; ++i) smallest_pivots_[ToIndex(i)] = kSmallestPivot * diagonal[i];
     if (!EliminateColumns(work_.front.data(), PaddedRows(size), size, pivots,
                           smallest_pivots_.data())) {
       return false;
@@ -87,16 +81,16 @@ Definiteness SparseCholesky<kDim>::FactorizeExactly(const ExactMatrix& H,
     const int pivots = plan_.pivots(s);
     Assemble(H, added, s, &work.front);
     AddUpdates(s, &work);
-    front_noise.resize(Index(size));
+    front_noise.resize(ToIndex(size));
     for (int i = 0; i < size; ++i) {
       const std::size_t row = RowOfFront(s, i);
-      front_noise[Index(i)] = noise[row] + (i < pivots ? kExactNoise * diagonal_[row] : 0.0);
+      front_noise[ToIndex(i)] = noise[row] + (i < pivots ? kExactNoise * diagonal_[row] : 0.0);
     }
     result = std::max(result,
                       EliminateExactly(work.front.data(), PaddedRows(size), size, pivots,
                                        front_noise.data(), values_.data() + plan_.panel_start(s)));
     if (result == Definiteness::kIndefinite) return result;
-    for (int i = pivots; i < size; ++i) noise[RowOfFront(s, i)] = front_noise[Index(i)];
+    for (int i = pivots; i < size; ++i) noise[RowOfFront(s, i)] = front_noise[ToIndex(i)];
     StoreUpdate(s, &work);
   }
   FindSmallestPivot();
@@ -108,27 +102,10 @@ std::size_t SparseCholesky<kDim>::RowOfFront(int s, int i) const {
   const SymbolicFactor& structure = plan_.structure();
   const int block = i / kDim;
   const int own = structure.columns(s);
-  const int row = block < own ? structure.first_column[Index(s)] + block
-                              : structure.rows[structure.first_row[Index(s)] + Index(block - own)];
-  return Index(kDim * row + i % kDim);
-}
-
-template <int kDim>
-double SparseCholesky<kDim>::LargestNoise() const {
-  const SymbolicFactor& structure = plan_.structure();
-  std::vector<double> noise(diagonal_.size());
-  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = kNoise * diagonal_[i];
-  double largest = 0.0;
-  for (int s = 0; s < structure.supernode_count(); ++s) {
-    const int size = plan_.front_size(s);
-    const double* column = panel(s);
-    for (int c = 0; c < plan_.pivots(s); ++c, column += PaddedRows(size)) {
-      const double share = noise[RowOfFront(s, c)] / (column[c] * column[c]);
-      largest = std::max(largest, share);
-      for (int i = c + 1; i < size; ++i) noise[RowOfFront(s, i)] += column[i] * column[i] * share;
-    }
-  }
-  return largest;
+  const int row = block < own
+                      ? structure.first_column[ToIndex(s)] + block
+                      : structure.rows[structure.first_row[ToIndex(s)] + ToIndex(block - own)];
+  return ToIndex(kDim * row + i % kDim);
 }
 
 template <int kDim>
@@ -142,14 +119,14 @@ void SparseCholesky<kDim>::Assemble(const SymmetricBlockMatrix<kDim, Scalar>& H,
   std::fill_n(front_values->begin(), PaddedArea(size, size), Scalar(0.0));
   Eigen::Map<Front, 0, Eigen::OuterStride<>> front(front_values->data(), size, size,
                                                    Eigen::OuterStride<>(PaddedRows(size)));
-  const int first = structure.first_column[Index(s)];
+  const int first = structure.first_column[ToIndex(s)];
   for (int k = 0; k < structure.columns(s); ++k) {
-    const int col = structure.order[Index(first + k)];
+    const int col = structure.order[ToIndex(first + k)];
     auto diagonal = front.template block<kDim, kDim>(kDim * k, kDim * k);
     diagonal = H.diagonal(col);
     for (int i = 0; i < kDim; ++i) {
       if (added.size() > 0) diagonal(i, i) += Scalar(added[kDim * col + i]);
-      diagonal_[Index(kDim * (first + k) + i)] = static_cast<double>(diagonal(i, i));
+      diagonal_[ToIndex(kDim * (first + k) + i)] = static_cast<double>(diagonal(i, i));
     }
   }
   for (const FrontPlan::Source& source : plan_.sources(s)) {
@@ -169,7 +146,7 @@ void SparseCholesky<kDim>::AddUpdates(int s, Workspace<Scalar>* work) const {
   const int ld = PaddedRows(plan_.front_size(s));
   for (int child = plan_.last_child(s); child != -1; child = plan_.sibling(child)) {
     const int count = structure.row_count(child);
-    const int* const target = &structure.row_in_parent[structure.first_row[Index(child)]];
+    const int* const target = &structure.row_in_parent[structure.first_row[ToIndex(child)]];
     const int update_ld = PaddedRows(kDim * count);
     const Scalar* update = work->updates.data() + plan_.update_start(child);
     for (int b = 0; b < count; ++b) {
@@ -194,7 +171,7 @@ void SparseCholesky<kDim>::StoreUpdate(int s, Workspace<Scalar>* work) const {
   const int below = size - pivots;
   Scalar* const update = work->updates.data() + plan_.update_start(s);
   for (int j = 0; j < below; ++j) {
-    std::copy_n(&work->front[PaddedArea(size, pivots + j) + Index(pivots + j)], below - j,
+    std::copy_n(&work->front[PaddedArea(size, pivots + j) + ToIndex(pivots + j)], below - j,
                 update + PaddedArea(below, j) + j);
   }
 }
@@ -205,7 +182,7 @@ void SparseCholesky<kDim>::FindSmallestPivot() {
   smallest_pivot_ = std::numeric_limits<double>::infinity();
   for (int s = 0; s < structure.supernode_count(); ++s) {
     const std::ptrdiff_t step = PaddedRows(plan_.front_size(s)) + 1;
-    const double* const diagonal = &diagonal_[Index(kDim * structure.first_column[Index(s)])];
+    const double* const diagonal = &diagonal_[ToIndex(kDim * structure.first_column[ToIndex(s)])];
     for (int i = 0; i < plan_.pivots(s); ++i) {
       const double root = panel(s)[i * step];
       smallest_pivot_ = std::min(smallest_pivot_, root * root / diagonal[i]);
@@ -218,8 +195,8 @@ void SparseCholesky<kDim>::SolveLanes(double* x, int lanes) const {
   const SymbolicFactor& structure = plan_.structure();
   const int block = lanes * kDim;  // numbers in one block row
   double* const work = solve_work_.data();
-  const auto own = [&](int s) { return x + block * structure.first_column[Index(s)]; };
-  const auto rows = [&](int s) { return structure.rows.data() + structure.first_row[Index(s)]; };
+  const auto own = [&](int s) { return x + block * structure.first_column[ToIndex(s)]; };
+  const auto rows = [&](int s) { return structure.rows.data() + structure.first_row[ToIndex(s)]; };
   for (int s = 0; s < structure.supernode_count(); ++s) {
     const int width = structure.columns(s);
     double* const below = std::copy_n(own(s), block * width, work);
@@ -255,12 +232,12 @@ Eigen::MatrixXd SparseCholesky<kDim>::Solve(const Eigen::Ref<const Eigen::Matrix
     const Eigen::Index count = std::min<Eigen::Index>(lanes, rhs.cols() - first);
     x.setZero();
     for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
-      const int from = kDim * structure.order[Index(i / kDim)] + i % kDim;
+      const int from = kDim * structure.order[ToIndex(i / kDim)] + i % kDim;
       for (Eigen::Index k = 0; k < count; ++k) x(k, i) = rhs(from, first + k);
     }
     SolveLanes(x.data(), lanes);
     for (int i = 0; i < static_cast<int>(rhs.rows()); ++i) {
-      const int to = kDim * structure.order[Index(i / kDim)] + i % kDim;
+      const int to = kDim * structure.order[ToIndex(i / kDim)] + i % kDim;
       for (Eigen::Index k = 0; k < count; ++k) result(to, first + k) = x(k, i);
     }
   }

@@ -44,11 +44,6 @@ class SparseCholesky {
   /// the condition number of the matrix when its diagonal is scaled to 1.
   double smallest_pivot() const { return smallest_pivot_; }
 
-  /// How wrong a pivot may be, at most, as a share of it, if the matrix's entries are right to a
-  /// few units in the last place of double: the first-order effect of errors of the diagonal on the
-  /// pivots. Takes as long as Solve.
-  double LargestNoise() const;
-
   /// The factor's columns of a supernode, over the rows of its front; the leading dimension is
   /// PaddedRows of the front's size. Above the diagonal nothing is defined.
   const double* panel(int s) const { return values_.data() + plan_.panel_start(s); }
@@ -75,8 +70,6 @@ class SparseCholesky {
   /// Row i of a supernode's front, as a row of the matrix in elimination order.
   std::size_t RowOfFront(int s, int i) const;
   void SolveLanes(double* x, int lanes) const;
-
-  static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
   FrontPlan plan_{kDim};
   std::vector<double> values_;    // the factor

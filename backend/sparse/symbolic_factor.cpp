@@ -1,5 +1,7 @@
 #include "backend/sparse/symbolic_factor.h"
 
+#include "backend/base/index.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -8,22 +10,20 @@
 namespace loopgrid {
 namespace {
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
-
 /// Lists of rows, one a column, in one array.
 struct ColumnLists {
   std::vector<int> start;
   std::vector<int> rows;
 
   std::span<const int> operator[](int col) const {
-    return {rows.data() + start[Index(col)], rows.data() + start[Index(col) + 1]};
+    return {rows.data() + start[ToIndex(col)], rows.data() + start[ToIndex(col) + 1]};
   }
 };
 
 std::vector<int> Inverse(const std::vector<int>& permutation) {
   std::vector<int> inverse(permutation.size());
   for (int k = 0; k < static_cast<int>(permutation.size()); ++k) {
-    inverse[Index(permutation[Index(k)])] = k;
+    inverse[ToIndex(permutation[ToIndex(k)])] = k;
   }
   return inverse;
 }
@@ -33,14 +33,16 @@ ColumnLists UpperTriangle(std::span<const BlockPlace> places, const std::vector<
   ColumnLists lists;
   lists.start.assign(position.size() + 1, 0);
   for (const BlockPlace& place : places) {
-    ++lists.start[Index(std::max(position[Index(place.row)], position[Index(place.col)])) + 1];
+    ++lists
+          .start[ToIndex(std::max(position[ToIndex(place.row)], position[ToIndex(place.col)])) + 1];
   }
   std::partial_sum(lists.start.begin(), lists.start.end(), lists.start.begin());
   lists.rows.resize(places.size());
   std::vector<int> next(lists.start.begin(), lists.start.end() - 1);
   for (const BlockPlace& place : places) {
-    const auto [low, high] = std::minmax({position[Index(place.row)], position[Index(place.col)]});
-    lists.rows[Index(next[Index(high)]++)] = low;
+    const auto [low, high] =
+        std::minmax({position[ToIndex(place.row)], position[ToIndex(place.col)]});
+    lists.rows[ToIndex(next[ToIndex(high)]++)] = low;
   }
   return lists;
 }
@@ -48,14 +50,14 @@ ColumnLists UpperTriangle(std::span<const BlockPlace> places, const std::vector<
 /// Elimination tree (Liu 1990): the parent of column j is the first row below j in the factor.
 std::vector<int> EliminationTree(const ColumnLists& upper) {
   const int n = static_cast<int>(upper.start.size()) - 1;
-  std::vector<int> parent(Index(n), -1);
-  std::vector<int> ancestor(Index(n), -1);
+  std::vector<int> parent(ToIndex(n), -1);
+  std::vector<int> ancestor(ToIndex(n), -1);
   for (int j = 0; j < n; ++j) {
     for (int i : upper[j]) {
       while (i != -1 && i < j) {
-        const int next = ancestor[Index(i)];
-        ancestor[Index(i)] = j;
-        if (next == -1) parent[Index(i)] = j;
+        const int next = ancestor[ToIndex(i)];
+        ancestor[ToIndex(i)] = j;
+        if (next == -1) parent[ToIndex(i)] = j;
         i = next;
       }
     }
@@ -66,25 +68,25 @@ std::vector<int> EliminationTree(const ColumnLists& upper) {
 /// Children before parents, each subtree contiguous: result[k] is the k-th node visited.
 std::vector<int> Postorder(const std::vector<int>& parent) {
   const int n = static_cast<int>(parent.size());
-  std::vector<int> first_child(Index(n), -1);
-  std::vector<int> sibling(Index(n), -1);
+  std::vector<int> first_child(ToIndex(n), -1);
+  std::vector<int> sibling(ToIndex(n), -1);
   std::vector<int> stack;
   for (int j = n - 1; j >= 0; --j) {
-    const int up = parent[Index(j)];
+    const int up = parent[ToIndex(j)];
     if (up == -1) continue;
-    sibling[Index(j)] = first_child[Index(up)];
-    first_child[Index(up)] = j;
+    sibling[ToIndex(j)] = first_child[ToIndex(up)];
+    first_child[ToIndex(up)] = j;
   }
   std::vector<int> order;
-  order.reserve(Index(n));
+  order.reserve(ToIndex(n));
   for (int root = 0; root < n; ++root) {
-    if (parent[Index(root)] != -1) continue;
+    if (parent[ToIndex(root)] != -1) continue;
     stack.push_back(root);
     while (!stack.empty()) {
       const int node = stack.back();
-      const int child = first_child[Index(node)];
+      const int child = first_child[ToIndex(node)];
       if (child != -1) {
-        first_child[Index(node)] = sibling[Index(child)];
+        first_child[ToIndex(node)] = sibling[ToIndex(child)];
         stack.push_back(child);
       } else {
         order.push_back(node);
@@ -101,12 +103,12 @@ template <typename Visit>
 void ForEachFactorEntry(const ColumnLists& upper, const std::vector<int>& parent,
                         const Visit& visit) {
   const int n = static_cast<int>(parent.size());
-  std::vector<int> mark(Index(n), -1);
+  std::vector<int> mark(ToIndex(n), -1);
   for (int i = 0; i < n; ++i) {
-    mark[Index(i)] = i;
+    mark[ToIndex(i)] = i;
     for (int j : upper[i]) {
-      for (; mark[Index(j)] != i; j = parent[Index(j)]) {
-        mark[Index(j)] = i;
+      for (; mark[ToIndex(j)] != i; j = parent[ToIndex(j)]) {
+        mark[ToIndex(j)] = i;
         visit(j, i);
       }
     }
@@ -136,13 +138,13 @@ std::vector<int> FindSupernodes(const std::vector<int>& parent, const std::vecto
   for (int j = 0; j < n; ++j) {
     Group group{j, j, 0.0};
     // In a postordering the column before j is its last child, or j has none.
-    while (!groups.empty() && parent[Index(groups.back().last)] <= j &&
-           parent[Index(groups.back().last)] != -1) {
+    while (!groups.empty() && parent[ToIndex(groups.back().last)] <= j &&
+           parent[ToIndex(groups.back().last)] != -1) {
       const Group& child = groups.back();
       const int width = j - child.first + 1;
-      const double below = counts[Index(j)];
+      const double below = counts[ToIndex(j)];
       const double added =
-          (child.last - child.first + 1) * (j - child.last + below - counts[Index(child.last)]);
+          (child.last - child.first + 1) * (j - child.last + below - counts[ToIndex(child.last)]);
       const double zeros = group.zeros + child.zeros + added;
       const double entries = 0.5 * width * (width + 1) + width * below;
       if (added > 0.0 && !WorthMerging(width, zeros, entries)) break;
@@ -166,12 +168,12 @@ void ListRows(const ColumnLists& upper, const std::vector<int>& tree,
   factor->first_row = {0};
   for (std::size_t s = 0; s + 1 < factor->first_column.size(); ++s) {
     const int last = factor->first_column[s + 1] - 1;
-    next[Index(last)] = factor->first_row.back();
-    factor->first_row.push_back(factor->first_row.back() + Index(counts[Index(last)]));
+    next[ToIndex(last)] = factor->first_row.back();
+    factor->first_row.push_back(factor->first_row.back() + ToIndex(counts[ToIndex(last)]));
   }
   factor->rows.resize(factor->first_row.back());
   ForEachFactorEntry(upper, tree, [&](int col, int row) {
-    if (next[Index(col)] != kNotLast) factor->rows[next[Index(col)]++] = row;
+    if (next[ToIndex(col)] != kNotLast) factor->rows[next[ToIndex(col)]++] = row;
   });
 }
 
@@ -180,16 +182,17 @@ void ConnectSupernodes(const std::vector<int>& tree, SymbolicFactor* factor) {
   std::vector<int> supernode_of(tree.size());
   const int count = static_cast<int>(factor->first_column.size()) - 1;
   for (int s = 0; s < count; ++s) {
-    const int end = factor->first_column[Index(s) + 1];
-    for (int k = factor->first_column[Index(s)]; k < end; ++k) supernode_of[Index(k)] = s;
+    const int end = factor->first_column[ToIndex(s) + 1];
+    for (int k = factor->first_column[ToIndex(s)]; k < end; ++k) supernode_of[ToIndex(k)] = s;
   }
-  factor->parent.resize(Index(count));
+  factor->parent.resize(ToIndex(count));
   factor->row_in_parent.resize(factor->rows.size());
   for (int s = 0; s < count; ++s) {
-    const int up = tree[Index(factor->first_column[Index(s) + 1] - 1)];
-    const int parent = up == -1 ? -1 : supernode_of[Index(up)];
-    factor->parent[Index(s)] = parent;
-    for (std::size_t k = factor->first_row[Index(s)]; k < factor->first_row[Index(s) + 1]; ++k) {
+    const int up = tree[ToIndex(factor->first_column[ToIndex(s) + 1] - 1)];
+    const int parent = up == -1 ? -1 : supernode_of[ToIndex(up)];
+    factor->parent[ToIndex(s)] = parent;
+    for (std::size_t k = factor->first_row[ToIndex(s)]; k < factor->first_row[ToIndex(s) + 1];
+         ++k) {
       factor->row_in_parent[k] = factor->PositionInFront(parent, factor->rows[k]);
     }
   }
@@ -198,11 +201,11 @@ void ConnectSupernodes(const std::vector<int>& tree, SymbolicFactor* factor) {
 }  // namespace
 
 int SymbolicFactor::PositionInFront(int s, int index) const {
-  const int first = first_column[Index(s)];
+  const int first = first_column[ToIndex(s)];
   const int width = columns(s);
   if (index < first + width) return index - first;
-  const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first_row[Index(s)]);
-  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(first_row[Index(s) + 1]);
+  const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first_row[ToIndex(s)]);
+  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(first_row[ToIndex(s) + 1]);
   return width + static_cast<int>(std::lower_bound(begin, end, index) - begin);
 }
 
@@ -220,13 +223,13 @@ double SymbolicFactor::Operations() const {
 SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places) {
   SymbolicFactor factor;
   const std::vector<int> visits = Postorder(EliminationTree(UpperTriangle(places, Inverse(order))));
-  for (int visit : visits) factor.order.push_back(order[Index(visit)]);
+  for (int visit : visits) factor.order.push_back(order[ToIndex(visit)]);
   factor.position = Inverse(factor.order);
 
   const ColumnLists upper = UpperTriangle(places, factor.position);
   const std::vector<int> tree = EliminationTree(upper);
   std::vector<int> counts(order.size(), 0);
-  ForEachFactorEntry(upper, tree, [&](int col, int) { ++counts[Index(col)]; });
+  ForEachFactorEntry(upper, tree, [&](int col, int) { ++counts[ToIndex(col)]; });
   factor.entries = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   factor.first_column = FindSupernodes(tree, counts);
   ListRows(upper, tree, counts, &factor);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "backend/base/index.h"
 #include "backend/sparse/symmetric_block_matrix.h"
 
 namespace loopgrid {
@@ -24,16 +25,14 @@ struct SymbolicFactor {
   std::vector<int> row_in_parent;      ///< their positions in the parent's front
 
   int supernode_count() const { return static_cast<int>(parent.size()); }
-  int columns(int s) const { return first_column[Index(s) + 1] - first_column[Index(s)]; }
+  int columns(int s) const { return first_column[ToIndex(s) + 1] - first_column[ToIndex(s)]; }
   int row_count(int s) const {
-    return static_cast<int>(first_row[Index(s) + 1] - first_row[Index(s)]);
+    return static_cast<int>(first_row[ToIndex(s) + 1] - first_row[ToIndex(s)]);
   }
   /// Products of blocks that the numeric factorisation computes.
   double Operations() const;
   /// Position of an elimination index in the front of supernode s; it must be in it.
   int PositionInFront(int s, int index) const;
-
-  static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 };
 
 /// Analyses the factor for an order of elimination, which it refines (without more fill) so that

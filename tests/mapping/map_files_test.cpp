@@ -26,7 +26,7 @@ OccupancyGrid SmallGrid() {
   return grid;
 }
 
-cv::Mat Decode(const std::string& bytes) {
+cv::Mat DecodePixels(const std::string& bytes) {
   return cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
 }
 
@@ -44,7 +44,7 @@ CellState MapServerState(int value, const std::string& yaml) {
 TEST(MapFiles, MapServerReadsTheSameThreeClassesAtTheSamePlaces) {
   const OccupancyGrid grid = SmallGrid();
   const std::string yaml = MapYaml(grid, "map.pgm");
-  const cv::Mat image = Decode(EncodePgm(DrawMap(grid)));
+  const cv::Mat image = DecodePixels(EncodePgm(DrawMap(grid)));
   ASSERT_EQ(image.type(), CV_8UC1);
   double origin_x = 0.0;
   double origin_y = 0.0;
@@ -91,8 +91,8 @@ TEST(MapFiles, YamlSaysWhatTheConventionAsksFor) {
 
 TEST(MapFiles, PngAndPgmHoldTheSamePixels) {
   const GreyImage image = DrawMap(SmallGrid());
-  const cv::Mat png = Decode(EncodePng(image));
-  const cv::Mat pgm = Decode(EncodePgm(image));
+  const cv::Mat png = DecodePixels(EncodePng(image));
+  const cv::Mat pgm = DecodePixels(EncodePgm(image));
   ASSERT_EQ(png.type(), CV_8UC1);
   ASSERT_EQ(png.size(), cv::Size(image.width, image.height));
   EXPECT_EQ(cv::norm(png, pgm, cv::NORM_INF), 0.0);

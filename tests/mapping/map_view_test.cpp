@@ -11,7 +11,7 @@ namespace {
 
 constexpr Color kInk{200, 10, 20};
 constexpr Color kFree{230, 230, 230};
-constexpr Color kWall{100, 100, 100};
+constexpr Color kWallColor{100, 100, 100};
 
 Eigen::AlignedBox2d Box(double min_x, double min_y, double max_x, double max_y) {
   return {Eigen::Vector2d(min_x, min_y), Eigen::Vector2d(max_x, max_y)};
@@ -66,19 +66,19 @@ OccupancyGrid OneBeam() {
 TEST(MapView, EnlargedCellsCoverTheirPixels) {
   Canvas canvas(101 * 8, 8);
   MapView view(&canvas, {0, 0, 101 * 8, 8}, Box(0.0, 0.0, 10.1, 0.1));
-  view.DrawGrid(OneBeam(), kFree, kWall);
+  view.DrawGrid(OneBeam(), kFree, kWallColor);
   EXPECT_EQ(Count(canvas, kFree), 100 * 8 * 8);
-  EXPECT_EQ(Count(canvas, kWall), 8 * 8);
-  EXPECT_EQ(canvas.At(100 * 8 + 7, 7), kWall);
+  EXPECT_EQ(Count(canvas, kWallColor), 8 * 8);
+  EXPECT_EQ(canvas.At(100 * 8 + 7, 7), kWallColor);
   EXPECT_EQ(canvas.At(100 * 8 - 1, 0), kFree);
 }
 
 TEST(MapView, WallsSurviveShrinking) {
   Canvas canvas(20, 20);
   MapView view(&canvas, {0, 0, 20, 20}, Box(0.0, -10.0, 20.0, 10.0));
-  view.DrawGrid(OneBeam(), kFree, kWall);
-  EXPECT_EQ(canvas.At(10, 9), kWall);
-  EXPECT_EQ(Count(canvas, kWall), 1);
+  view.DrawGrid(OneBeam(), kFree, kWallColor);
+  EXPECT_EQ(canvas.At(10, 9), kWallColor);
+  EXPECT_EQ(Count(canvas, kWallColor), 1);
   EXPECT_EQ(Count(canvas, kFree), 10);
 }
 

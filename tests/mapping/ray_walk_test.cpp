@@ -13,12 +13,12 @@
 namespace loopgrid {
 namespace {
 
-using CellIndex = std::pair<std::int64_t, std::int64_t>;
+using CellNumber = std::pair<std::int64_t, std::int64_t>;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-std::vector<CellIndex> Walk(GridPoint from, GridPoint to) {
-  std::vector<CellIndex> cells;
+std::vector<CellNumber> Walk(GridPoint from, GridPoint to) {
+  std::vector<CellNumber> cells;
   WalkRay(from, to, [&](std::int64_t x, std::int64_t y) { cells.emplace_back(x, y); });
   return cells;
 }
@@ -54,7 +54,7 @@ bool ClipToSlab(std::int64_t start, std::int64_t delta, std::int64_t cell, Fract
   return *low < *high;
 }
 
-bool Crosses(GridPoint from, GridPoint to, CellIndex cell) {
+bool Crosses(GridPoint from, GridPoint to, CellNumber cell) {
   Fraction low{0, 1};
   Fraction high{1, 1};
   return ClipToSlab(from.x, to.x - from.x, cell.first, &low, &high) &&
@@ -62,8 +62,8 @@ bool Crosses(GridPoint from, GridPoint to, CellIndex cell) {
 }
 
 // All cells of the bounding box that the segment crosses, but the one it ends in.
-std::set<CellIndex> BruteForce(GridPoint from, GridPoint to) {
-  std::set<CellIndex> cells;
+std::set<CellNumber> BruteForce(GridPoint from, GridPoint to) {
+  std::set<CellNumber> cells;
   const auto [min_x, max_x] = std::minmax({from.cell_x(), to.cell_x()});
   const auto [min_y, max_y] = std::minmax({from.cell_y(), to.cell_y()});
   for (std::int64_t y = min_y; y <= max_y; ++y) {
@@ -76,8 +76,8 @@ std::set<CellIndex> BruteForce(GridPoint from, GridPoint to) {
 }
 
 void ExpectAgreesWithBruteForce(GridPoint from, GridPoint to) {
-  const std::vector<CellIndex> walked = Walk(from, to);
-  const std::set<CellIndex> distinct(walked.begin(), walked.end());
+  const std::vector<CellNumber> walked = Walk(from, to);
+  const std::set<CellNumber> distinct(walked.begin(), walked.end());
   ASSERT_EQ(distinct.size(), walked.size()) << "a cell was visited twice";
   ASSERT_EQ(distinct, BruteForce(from, to))
       << "from " << from.x << ", " << from.y << " to " << to.x << ", " << to.y;
@@ -85,9 +85,9 @@ void ExpectAgreesWithBruteForce(GridPoint from, GridPoint to) {
 
 TEST(WalkRay, AlongAnAxisVisitsEachCellButTheLast) {
   EXPECT_THAT(Walk(Middle(0, 5), Middle(3, 5)),
-              ElementsAre(CellIndex{0, 5}, CellIndex{1, 5}, CellIndex{2, 5}));
+              ElementsAre(CellNumber{0, 5}, CellNumber{1, 5}, CellNumber{2, 5}));
   EXPECT_THAT(Walk(Middle(1, 2), Middle(1, -1)),
-              ElementsAre(CellIndex{1, 2}, CellIndex{1, 1}, CellIndex{1, 0}));
+              ElementsAre(CellNumber{1, 2}, CellNumber{1, 1}, CellNumber{1, 0}));
 }
 
 TEST(WalkRay, WithinOneCellVisitsNothing) {
@@ -96,9 +96,9 @@ TEST(WalkRay, WithinOneCellVisitsNothing) {
 }
 
 TEST(WalkRay, PassesCornersDiagonally) {
-  EXPECT_THAT(Walk({0, 0}, {2048, 2048}), ElementsAre(CellIndex{0, 0}, CellIndex{1, 1}));
-  EXPECT_THAT(Walk({0, 2047}, {2047, 0}), ElementsAre(CellIndex{0, 1}));
-  EXPECT_THAT(Walk({-1, -1}, {0, 0}), ElementsAre(CellIndex{-1, -1}));
+  EXPECT_THAT(Walk({0, 0}, {2048, 2048}), ElementsAre(CellNumber{0, 0}, CellNumber{1, 1}));
+  EXPECT_THAT(Walk({0, 2047}, {2047, 0}), ElementsAre(CellNumber{0, 1}));
+  EXPECT_THAT(Walk({-1, -1}, {0, 0}), ElementsAre(CellNumber{-1, -1}));
 }
 
 TEST(WalkRay, AgreesWithRationalClippingOnRandomRays) {
@@ -134,9 +134,9 @@ TEST(WalkRay, BackwardsVisitsTheSameCells) {
   for (int i = 0; i < 1000; ++i) {
     const GridPoint a{place(random), place(random)};
     const GridPoint b{place(random), place(random)};
-    std::vector<CellIndex> there = Walk(a, b);
+    std::vector<CellNumber> there = Walk(a, b);
     there.emplace_back(b.cell_x(), b.cell_y());
-    std::vector<CellIndex> back = Walk(b, a);
+    std::vector<CellNumber> back = Walk(b, a);
     back.emplace_back(a.cell_x(), a.cell_y());
     std::reverse(back.begin(), back.end());
     ASSERT_EQ(there, back) << "ray " << i;
@@ -152,7 +152,7 @@ TEST(WalkRay, IsExactFarFromTheOrigin) {
 TEST(WalkRay, EndsWhereItShouldAfterAMillionCells) {
   const GridPoint from{5, 7};
   const GridPoint to{GridPoint::kOne * 1'000'003 + 1, GridPoint::kOne * -999'999 + 2};
-  CellIndex last{0, 0};
+  CellNumber last{0, 0};
   std::int64_t count = 0;
   WalkRay(from, to, [&](std::int64_t x, std::int64_t y) {
     last = {x, y};

@@ -23,7 +23,7 @@ constexpr std::chrono::seconds kBetweenSyncs(1);
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kGzip = "\x1F\x8B";
 
-[[noreturn]] void Fail(const std::string& path, const char* doing) {
+[[noreturn]] void FailAtJournal(const std::string& path, const char* doing) {
   const int reason = errno;
   throw Error(ErrorCode::kOutput,
               path + ": " + doing + ": " + std::generic_category().message(reason));
@@ -52,10 +52,10 @@ void KeepReadable(ReceivedLine* first) {
 
 Journal::Journal(const std::string& path) : path_(path) {
   descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) Fail(path_, "cannot open");
+  if (descriptor_ < 0) FailAtJournal(path_, "cannot open");
   try {
     size_ = lseek(descriptor_, 0, SEEK_END);
-    if (size_ < 0) Fail(path_, "cannot read");
+    if (size_ < 0) FailAtJournal(path_, "cannot read");
     FindOpenEnd();
   } catch (...) {
     close(descriptor_);
@@ -80,7 +80,7 @@ void Journal::FindOpenEnd() {
     const auto count = static_cast<std::size_t>(std::min<std::int64_t>(end, chunk.size()));
     end -= static_cast<std::int64_t>(count);
     if (pread(descriptor_, chunk.data(), count, end) != static_cast<ssize_t>(count)) {
-      Fail(path_, "cannot read");
+      FailAtJournal(path_, "cannot read");
     }
     const std::string_view bytes(chunk.data(), count);
     const std::size_t newline = bytes.rfind('\n');
@@ -125,7 +125,7 @@ void Journal::Complete(const ReceivedLine& line) {
 
 void Journal::CloseOpenEnd() {
   const auto cut = static_cast<std::int64_t>(open_end_.size() - ClosedText(open_end_).size());
-  if (ftruncate(descriptor_, size_ - cut) != 0) Fail(path_, "cannot write");
+  if (ftruncate(descriptor_, size_ - cut) != 0) FailAtJournal(path_, "cannot write");
   size_ -= cut;
   open_end_.clear();
   Write("\n");
@@ -146,7 +146,7 @@ void Journal::Write(std::string_view bytes) {
       // What this leaves behind if it fails is a line without end, which a resumed session mends.
       if (ftruncate(descriptor_, start) == 0) size_ = start;
       errno = reason;
-      Fail(path_, "cannot write");
+      FailAtJournal(path_, "cannot write");
     }
     bytes.remove_prefix(static_cast<std::size_t>(count));
     size_ += count;

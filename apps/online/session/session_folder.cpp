@@ -73,7 +73,13 @@ SessionFolder::SessionFolder(SessionRequest* options, OutputDirectory* outputs)
     Begin(*options);
   }
   if (!options->continued.empty() && !Exists(path_, kJournalName)) {
-    CopyJournalOf(options->continued);
+    try {
+      CopyJournalOf(options->continued);
+    } catch (...) {
+      std::error_code ignored;
+      if (!resumed) fs::remove(File(kSessionName), ignored);
+      throw;
+    }
   }
   journal_ = std::make_unique<Journal>(File(kJournalName));
   options->run.log = journal_->path();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kLookMilliseconds = 50;
 
-[[noreturn]] void Fail(const std::string& path, const std::string& problem) {
+[[noreturn]] void FailToFollow(const std::string& path, const std::string& problem) {
   throw Error(ErrorCode::kInput, path + ": " + problem);
 }
 
@@ -28,7 +28,7 @@ std::string SystemReason() { return std::generic_category().message(errno); }
 
 struct stat StatusOf(const Descriptor& file, const std::string& path) {
   struct stat status = {};
-  if (fstat(file.get(), &status) != 0) Fail(path, "cannot read: " + SystemReason());
+  if (fstat(file.get(), &status) != 0) FailToFollow(path, "cannot read: " + SystemReason());
   return status;
 }
 
@@ -37,8 +37,9 @@ Descriptor OpenIfThere(const std::string& path) {
   // O_NONBLOCK: it may be a pipe, and open() would wait until somebody writes to it.
   Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file && errno == ENOENT) return file;
-  if (!file) Fail(path, "cannot open: " + SystemReason());
-  if (!S_ISREG(StatusOf(file, path).st_mode)) Fail(path, "only a regular file can be followed");
+  if (!file) FailToFollow(path, "cannot open: " + SystemReason());
+  if (!S_ISREG(StatusOf(file, path).st_mode))
+    FailToFollow(path, "only a regular file can be followed");
   return file;
 }
 
@@ -76,7 +77,7 @@ FollowSource::FollowSource(std::string path) : path_(std::move(path)), check_(pa
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   std::error_code error;
   if (!std::filesystem::is_directory(folder.empty() ? "." : folder, error)) {
-    Fail(path_, "there is no such folder");
+    FailToFollow(path_, "there is no such folder");
   }
   file_ = OpenIfThere(path_);
 }
@@ -116,7 +117,7 @@ bool FollowSource::ReadToEnd(LineInlet* inlet) {
   while (!wake_up_.signalled()) {
     if (!file_) return true;
     const ssize_t count = pread(file_.get(), buffer.data(), buffer.size(), offset_);
-    if (count < 0) Fail(path_, "cannot read: " + SystemReason());
+    if (count < 0) FailToFollow(path_, "cannot read: " + SystemReason());
     if (count == 0) return true;
     offset_ += count;
     const std::string_view bytes(buffer.data(), static_cast<std::size_t>(count));

@@ -21,7 +21,7 @@ namespace {
 
 using Buffer = std::array<char, std::size_t{1} << 16>;
 
-[[noreturn]] void Fail(const std::string& name, int error) {
+[[noreturn]] void FailToRead(const std::string& name, int error) {
   throw Error(ErrorCode::kInput, name + ": cannot read: " + std::generic_category().message(error));
 }
 
@@ -30,10 +30,10 @@ using Buffer = std::array<char, std::size_t{1} << 16>;
 PipeSource::PipeSource(int descriptor, std::string name)
     : descriptor_(descriptor), name_(std::move(name)) {
   const int flags = fcntl(descriptor_, F_GETFL);
-  if (flags < 0) Fail(name_, errno);
-  if ((flags & O_ACCMODE) == O_WRONLY) Fail(name_, EBADF);
+  if (flags < 0) FailToRead(name_, errno);
+  if ((flags & O_ACCMODE) == O_WRONLY) FailToRead(name_, EBADF);
   struct stat status = {};
-  if (fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) Fail(name_, EISDIR);
+  if (fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) FailToRead(name_, EISDIR);
 }
 
 void PipeSource::Run(LineQueue* queue) {
@@ -45,7 +45,7 @@ void PipeSource::Run(LineQueue* queue) {
     if (count == 0) break;
     if (count < 0) {
       if (errno == EINTR || errno == EAGAIN) continue;
-      Fail(name_, errno);
+      FailToRead(name_, errno);
     }
     const std::string_view bytes(buffer->data(), static_cast<std::size_t>(count));
     check.Look(bytes);
@@ -59,7 +59,7 @@ bool PipeSource::WaitForBytes() const {
   std::array<pollfd, 2> waiting = {pollfd{descriptor_, POLLIN, 0},
                                    pollfd{wake_up_.descriptor(), POLLIN, 0}};
   while (poll(waiting.data(), waiting.size(), -1) < 0) {
-    if (errno != EINTR) Fail(name_, errno);
+    if (errno != EINTR) FailToRead(name_, errno);
   }
   return waiting[1].revents == 0;
 }

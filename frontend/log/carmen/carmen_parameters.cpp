@@ -9,7 +9,7 @@ namespace loopgrid {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+constexpr double kRadiansPerDegree = kPi / 180.0;
 constexpr double kFullTurn = 2.0 * kPi + 1e-6;  // with room for rounding
 
 enum Laser : std::size_t { kFront, kRear, kOther };
@@ -89,7 +89,7 @@ BeamAngles BeamAnglesOf(const CarmenLaserMessage& message,
       stated.step = message.field_of_view / static_cast<double>(BeamSteps(message.ranges.size()));
     }
   } else if (parameters.resolution > 0.0) {
-    stated.step = parameters.resolution * kDegree;
+    stated.step = parameters.resolution * kRadiansPerDegree;
     stated.first = usual.first * stated.step / usual.step;
   }
   const double span = std::abs(stated.step) * (static_cast<double>(message.ranges.size()) - 1.0);

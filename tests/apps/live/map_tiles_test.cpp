@@ -181,8 +181,8 @@ TEST(MapTiles, DrawAPictureCoarserThatWouldBeTooLarge) {
   tiles.Update(grid, grid.SeenBox());
   const CellBox seen = grid.SeenBox();
   ASSERT_EQ(std::max(seen.width(), seen.height()), 593);
-  for (const auto& [max_side, level] :
-       std::vector<std::pair<int, int>>{{593, 0}, {592, 1}, {100, 3}, {10, 6}, {4, 8}, {3, 9}, {2, 9}}) {
+  for (const auto& [max_side, level] : std::vector<std::pair<int, int>>{
+           {593, 0}, {592, 1}, {100, 3}, {10, 6}, {4, 8}, {3, 9}, {2, 9}}) {
     const MapPicture picture = tiles.Picture(max_side);
     EXPECT_EQ(picture.cells_per_pixel, 1 << level) << max_side;
     EXPECT_LE(std::max(picture.image.width, picture.image.height), max_side);

@@ -21,7 +21,7 @@ using test_support::TemporaryDirectory;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-std::vector<json> EventsIn(const std::string& path) {
+std::vector<json> WrittenEvents(const std::string& path) {
   std::vector<json> events;
   std::istringstream lines(ReadFile(path));
   for (std::string line; std::getline(lines, line);) events.push_back(json::parse(line));
@@ -51,7 +51,7 @@ TEST(EventWriter, PoseHasWhatItTakesToSteerBy) {
                          {"theta", 0.5},     {"covariance", {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}},
                          {"matched", true},  {"localized", true},
                          {"latency_ms", 1.5}};
-  EXPECT_THAT(EventsIn(folder.File("events")), ::testing::ElementsAre(expected));
+  EXPECT_THAT(WrittenEvents(folder.File("events")), ::testing::ElementsAre(expected));
 }
 
 TEST(EventWriter, NodesClosuresAndOptimizationsFollowThePose) {
@@ -67,7 +67,7 @@ TEST(EventWriter, NodesClosuresAndOptimizationsFollowThePose) {
   update.closures[1].outcome = ClosureOutcome::kLowScore;
   events.Scan(update);
   events.Flush();
-  const std::vector<json> found = EventsIn(folder.File("events"));
+  const std::vector<json> found = WrittenEvents(folder.File("events"));
   ASSERT_EQ(found.size(), 5u);
   EXPECT_EQ(found[1]["event"], "node");
   EXPECT_EQ(found[1]["node"], 3);
@@ -86,7 +86,7 @@ TEST(EventWriter, NumbersThatJsonHasNoWordForAreNull) {
   update.timestamp = std::numeric_limits<double>::quiet_NaN();
   events.Scan(update);
   events.Flush();
-  const std::vector<json> found = EventsIn(folder.File("events"));
+  const std::vector<json> found = WrittenEvents(folder.File("events"));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0]["covariance"][0].is_null());
   EXPECT_TRUE(found[0]["time"].is_null());
@@ -98,7 +98,7 @@ TEST(EventWriter, TextStaysJsonWhateverIsInIt) {
   events.Warning("caf\xe9 \"quoted\"\n");
   events.Start({}, "\xff", "");
   events.Flush();
-  EXPECT_EQ(EventsIn(folder.File("events")).size(), 2u);
+  EXPECT_EQ(WrittenEvents(folder.File("events")).size(), 2u);
 }
 
 TEST(EventWriter, AddsToAFileThatIsThere) {
@@ -108,7 +108,7 @@ TEST(EventWriter, AddsToAFileThatIsThere) {
     events.Saved(5);
     events.Flush();
   }
-  EXPECT_EQ(EventsIn(folder.File("events")).size(), 2u);
+  EXPECT_EQ(WrittenEvents(folder.File("events")).size(), 2u);
 }
 
 TEST(EventWriter, WritesNothingWhereNobodyAsked) {

@@ -22,11 +22,11 @@ Closure SomeClosure() {
 }
 
 std::string ObjectOf(const Closure& closure,
-                     void (*add)(const Closure& closure, JsonWriter* json)) {
-  JsonWriter json(JsonWriter::Layout::kOneLine);
-  json.BeginObject();
-  add(closure, &json);
-  return json.EndObject().Take();
+                     void (*add)(const Closure& closure, JsonWriter* writer)) {
+  JsonWriter writer(JsonWriter::Layout::kOneLine);
+  writer.BeginObject();
+  add(closure, &writer);
+  return writer.EndObject().Take();
 }
 
 TEST(ClosureFields, OfAnEvent) {

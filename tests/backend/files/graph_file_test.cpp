@@ -52,16 +52,14 @@ void ExpectSameGraph(const PoseGraph<Pose>& a, const PoseGraph<Pose>& b) {
     EXPECT_EQ(a.constraints[k].from, b.constraints[k].from);
     EXPECT_EQ(a.constraints[k].to, b.constraints[k].to);
     ExpectSamePose(a.constraints[k].T_from_to, b.constraints[k].T_from_to);
-    EXPECT_EQ(UpperPart(a.constraints[k].information),
-              UpperPart(b.constraints[k].information));
+    EXPECT_EQ(UpperPart(a.constraints[k].information), UpperPart(b.constraints[k].information));
   }
   ASSERT_EQ(a.observations.size(), b.observations.size());
   for (std::size_t k = 0; k < a.observations.size(); ++k) {
     EXPECT_EQ(a.observations[k].node, b.observations[k].node);
     EXPECT_EQ(a.observations[k].landmark, b.observations[k].landmark);
     EXPECT_EQ(a.observations[k].p_node, b.observations[k].p_node);
-    EXPECT_EQ(UpperPart(a.observations[k].information),
-              UpperPart(b.observations[k].information));
+    EXPECT_EQ(UpperPart(a.observations[k].information), UpperPart(b.observations[k].information));
   }
 }
 

@@ -105,7 +105,8 @@ Matrix6d InformationInFile(const Constraint<SE3>& constraint) {
   std::string_view line;
   lines.Next(&line);
   GraphNotes notes;
-  GraphLine fields(lines, line, &notes);
+  const GraphReadOptions options;
+  GraphLine fields(lines, line, options, &notes);
   fields.Numbers<8>();
   return fields.UpperTriangle<6>();
 }

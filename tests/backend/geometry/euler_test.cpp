@@ -12,7 +12,7 @@ namespace {
 
 using test_support::RandomVector;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kEulerPi = std::numbers::pi;
 
 TEST(RollPitchYaw, UndoesFromRollPitchYaw) {
   std::mt19937 random(1);
@@ -42,12 +42,12 @@ TEST(RollPitchYaw, DescribesTheRotationNearGimbalLockToo) {
   for (double distance : {0.0, 1e-15, 1e-13, 1e-12, 1e-11, 1e-9, 1e-7, 1e-4}) {
     for (double sign : {1.0, -1.0}) {
       Eigen::Vector3d angles = RandomVector<Eigen::Vector3d>(&random, 3.0);
-      angles.y() = sign * (0.5 * kPi - distance);
+      angles.y() = sign * (0.5 * kEulerPi - distance);
       const Eigen::Quaterniond q = FromRollPitchYaw(angles);
       const Eigen::Vector3d found = RollPitchYaw(q);
       EXPECT_TRUE(FromRollPitchYaw(found).toRotationMatrix().isApprox(q.toRotationMatrix(), 2e-14))
-          << "seed 2, " << distance << " from " << sign * 0.5 * kPi;
-      EXPECT_LE(std::abs(found.y()), 0.5 * kPi);
+          << "seed 2, " << distance << " from " << sign * 0.5 * kEulerPi;
+      EXPECT_LE(std::abs(found.y()), 0.5 * kEulerPi);
       EXPECT_TRUE(distance > 1e-15 || found.x() == 0.0);
     }
   }
@@ -70,7 +70,7 @@ TEST(BodyRates, AreTheDerivativeOfTheRotation) {
 }
 
 TEST(BodyRates, AreSingularAtGimbalLock) {
-  EXPECT_NEAR(BodyRates({0.3, 0.5 * kPi, 1.0}).determinant(), 0.0, 1e-15);
+  EXPECT_NEAR(BodyRates({0.3, 0.5 * kEulerPi, 1.0}).determinant(), 0.0, 1e-15);
   EXPECT_NEAR(BodyRates({0.3, 0.0, 1.0}).determinant(), 1.0, 1e-15);
 }
 

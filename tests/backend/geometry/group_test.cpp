@@ -17,7 +17,7 @@ using test_support::PoseWithAngle;
 using test_support::RandomPose;
 using test_support::RandomVector;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kGroupPi = std::numbers::pi;
 
 template <typename Pose>
 class GroupTest : public ::testing::Test {
@@ -70,7 +70,7 @@ TYPED_TEST(GroupTest, IsAGroupThatActsOnPoints) {
 }
 
 TYPED_TEST(GroupTest, CoordinatesMakeThePoseAgain) {
-  for (double angle : {0.0, 1e-9, -1.0, 3.0, -kPi + 1e-3}) {
+  for (double angle : {0.0, 1e-9, -1.0, 3.0, -kGroupPi + 1e-3}) {
     const TypeParam pose =
         PoseWithAngle<TypeParam>(TestFixture::Point::Constant(-2.5), angle, &this->random_);
     EXPECT_LE(Distance(TypeParam(pose.coordinates()), pose), 1e-12) << angle;
@@ -92,7 +92,7 @@ TYPED_TEST(GroupTest, BoxminusUndoesBoxplus) {
 TYPED_TEST(GroupTest, LogUndoesExpFromNothingToHalfATurn) {
   using Twist = typename TypeParam::Tangent;
   for (double angle : {0.0, 1e-9, 1e-7, 1e-5, 9.9e-5, 1.01e-4, 9e-3, 1.1e-2, 0.5, 2.0, 3.0,
-                       kPi - 1e-4, kPi - 1e-9}) {
+                       kGroupPi - 1e-4, kGroupPi - 1e-9}) {
     for (double sign : {1.0, -1.0}) {
       Twist twist = RandomVector<Twist>(&this->random_);
       auto omega = twist.template tail<TypeParam::kDof - TestFixture::kPoint>();
@@ -103,7 +103,7 @@ TYPED_TEST(GroupTest, LogUndoesExpFromNothingToHalfATurn) {
 }
 
 TYPED_TEST(GroupTest, LogOfHalfATurnIsOneOfItsTwoTwists) {
-  for (double angle : {kPi, -kPi}) {
+  for (double angle : {kGroupPi, -kGroupPi}) {
     const TypeParam pose =
         PoseWithAngle<TypeParam>(TestFixture::Point::Constant(2.0), angle, &this->random_);
     EXPECT_LE(Distance(TypeParam::Exp(pose.Log()), pose), 1e-14);
@@ -170,7 +170,7 @@ TYPED_TEST(GroupTest, ManyProductsDoNotDriftOffTheGroup) {
   const auto R = pose.rotation().eval();
   EXPECT_TRUE((R * R.transpose()).isIdentity(1e-14));
   // A hundred thousand tenths of a radian; rounding adds up to no more than their number.
-  const double turned = 1e4 - 2.0 * kPi * std::round(1e4 / (2.0 * kPi));
+  const double turned = 1e4 - 2.0 * kGroupPi * std::round(1e4 / (2.0 * kGroupPi));
   EXPECT_NEAR(R.trace(),
               TestFixture::kPoint == 2 ? 2.0 * std::cos(turned) : 1.0 + 2.0 * std::cos(turned),
               1e-9);
@@ -198,7 +198,7 @@ TEST(SE3, HasTheQuaternionWithPositiveW) {
   const SE3 turn(Eigen::Vector3d::Zero(),
                  Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitX())));
   EXPECT_GE((turn * turn).quaternion().w(), 0.0);  // 4 radians: the other way round is shorter
-  EXPECT_NEAR(turn.Boxplus(turn.coordinates()).Log()(3), 4.0 - 2.0 * kPi, 1e-14);
+  EXPECT_NEAR(turn.Boxplus(turn.coordinates()).Log()(3), 4.0 - 2.0 * kGroupPi, 1e-14);
 }
 
 TEST(SE3, NormalizesItsQuaternion) {
@@ -214,7 +214,8 @@ TEST(SE3, ATangentWithAVectorPartTooLongIsHalfATurn) {
   SE3::Tangent d = SE3::Tangent::Zero();
   d.tail<3>() = Eigen::Vector3d(0.0, 3.0, -4.0);
   const Eigen::Vector3d axis(0.0, 0.6, -0.8);
-  EXPECT_TRUE(SE3(d).rotation().isApprox(Eigen::AngleAxisd(kPi, axis).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE(
+      SE3(d).rotation().isApprox(Eigen::AngleAxisd(kGroupPi, axis).toRotationMatrix(), 1e-14));
   EXPECT_NEAR(SE3(d).quaternion().norm(), 1.0, 1e-15);
   d.tail<3>() = axis;  // just not too long
   EXPECT_NEAR(SE3(d).quaternion().norm(), 1.0, 1e-15);

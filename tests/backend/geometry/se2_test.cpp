@@ -7,16 +7,16 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kSe2Pi = std::numbers::pi;
 
 // What it shares with SE3 is in group_test.cpp.
 
 TEST(SE2, KeepsItsAngleInOneTurn) {
-  EXPECT_EQ(SE2(0.0, 0.0, kPi).theta(), -kPi);
-  EXPECT_NEAR(SE2(0.0, 0.0, 7.0).theta(), 7.0 - 2.0 * kPi, 1e-15);
+  EXPECT_EQ(SE2(0.0, 0.0, kSe2Pi).theta(), -kSe2Pi);
+  EXPECT_NEAR(SE2(0.0, 0.0, 7.0).theta(), 7.0 - 2.0 * kSe2Pi, 1e-15);
   const SE2 turn(0.0, 0.0, 2.0);
-  EXPECT_NEAR((turn * turn).theta(), 4.0 - 2.0 * kPi, 1e-15);
-  EXPECT_EQ(SE2(0.0, 0.0, -kPi).Inverse().theta(), -kPi);
+  EXPECT_NEAR((turn * turn).theta(), 4.0 - 2.0 * kSe2Pi, 1e-15);
+  EXPECT_EQ(SE2(0.0, 0.0, -kSe2Pi).Inverse().theta(), -kSe2Pi);
 }
 
 TEST(SE2, CoordinatesAreNotTheLogarithm) {
@@ -26,9 +26,9 @@ TEST(SE2, CoordinatesAreNotTheLogarithm) {
 }
 
 TEST(SE2, MovesPointsAsDrawnOnPaper) {
-  const SE2 left(3.0, 1.0, 0.5 * kPi);
+  const SE2 left(3.0, 1.0, 0.5 * kSe2Pi);
   EXPECT_TRUE((left * Eigen::Vector2d(2.0, 0.0)).isApprox(Eigen::Vector2d(3.0, 3.0), 1e-15));
-  EXPECT_EQ(left.cos(), std::cos(0.5 * kPi));
+  EXPECT_EQ(left.cos(), std::cos(0.5 * kSe2Pi));
   EXPECT_EQ(left.sin(), 1.0);
 }
 

@@ -15,7 +15,7 @@
 namespace loopgrid {
 namespace {
 
-using Kind = OptimalityCertificate::Kind;
+using StartKind = OptimalityCertificate::Kind;
 
 template <typename Pose>
 class BestStartTest : public ::testing::Test {};
@@ -29,7 +29,7 @@ TYPED_TEST(BestStartTest, AGoodStartIsTheOnlyOne) {
   const BestStartResult result = OptimizeFromBestStart(&graph, &optimizer);
   ASSERT_EQ(result.trials.size(), 1u);
   EXPECT_EQ(result.trials[0].start, InitialGuess::kNone);
-  EXPECT_EQ(result.certificate->kind, Kind::kGlobal);
+  EXPECT_EQ(result.certificate->kind, StartKind::kGlobal);
   EXPECT_EQ(result.trials[0].result.final_error, TotalChi2(graph));
 }
 
@@ -68,7 +68,7 @@ TYPED_TEST(BestStartTest, TheLowestEndIsKeptWhereNoneIsCertain) {
     test_support::Scramble(&graph, &random);
     Optimizer<TypeParam> optimizer;
     const BestStartResult result = OptimizeFromBestStart(&graph, &optimizer);
-    if (result.certificate->kind != Kind::kGlobal) {
+    if (result.certificate->kind != StartKind::kGlobal) {
       EXPECT_EQ(result.trials.size(), 3u);
     }
     for (const StartTrial& trial : result.trials) {
@@ -162,7 +162,7 @@ TEST_P(SharedGraphTest, ReachesTheGlobalOptimumFromTheStartInTheFile) {
         Optimizer<Pose> optimizer;
         const BestStartResult result = OptimizeFromBestStart(&of_pose.graph, &optimizer);
         EXPECT_LE(TotalChi2(of_pose.graph), GetParam().error * (1.0 + 1e-6));
-        EXPECT_EQ(result.certificate->kind, Kind::kGlobal);
+        EXPECT_EQ(result.certificate->kind, StartKind::kGlobal);
         EXPECT_GE(result.certificate->lower_bound, GetParam().error * (1.0 - 1e-6));
         EXPECT_EQ(result.trials.size(), 1u);
       },

@@ -16,7 +16,7 @@ using test_support::PoseWithAngle;
 using test_support::RandomPose;
 using test_support::RandomVector;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 constexpr Parametrization kAll[] = {Parametrization::kManifold, Parametrization::kExponential,
                                     Parametrization::kEuler};
 
@@ -56,7 +56,7 @@ TYPED_TEST_SUITE(ParametrizationTest, test_support::AllPoses, test_support::Pose
 TYPED_TEST(ParametrizationTest, JacobiansOfConstraintsAgreeWithNumericDerivatives) {
   using Pose = TypeParam;
   for (const Parametrization parametrization : kAll) {
-    for (double angle : {0.0, 1e-9, 1e-3, 1.0, -2.0, kPi - 0.01, -kPi + 0.01}) {
+    for (double angle : {0.0, 1e-9, 1e-3, 1.0, -2.0, kHalfTurn - 0.01, -kHalfTurn + 0.01}) {
       for (double reach : {1.0, 20.0, 1e4}) {
         SCOPED_TRACE(::testing::Message() << "parametrization " << static_cast<int>(parametrization)
                                           << ", error of " << angle << ", at " << reach << " m");

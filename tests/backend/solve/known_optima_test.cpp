@@ -22,7 +22,7 @@ struct KnownOptimum {
 };
 
 /// F by complex arithmetic, straight from the definition.
-double StraightforwardError(const PoseGraph<SE2>& graph) {
+double PlainError(const PoseGraph<SE2>& graph) {
   using Complex = std::complex<double>;
   double sum = 0.0;
   for (const Constraint<SE2>& constraint : graph.constraints) {
@@ -51,12 +51,12 @@ TEST_P(KnownOptimumTest, IsReachedFromTheStartInTheFile) {
   EXPECT_EQ(graph.constraints.size(), GetParam().constraints);
 
   Optimizer<SE2> optimizer;
-  const double start = StraightforwardError(graph);
+  const double start = PlainError(graph);
   const OptimizerResult result = optimizer.Optimize(&graph);
   EXPECT_NEAR(result.initial_error, start, 1e-9 * start);
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_LE(result.final_error, GetParam().error * (1.0 + 1e-6));
-  EXPECT_NEAR(StraightforwardError(graph), result.final_error, 1e-9 * result.final_error);
+  EXPECT_NEAR(PlainError(graph), result.final_error, 1e-9 * result.final_error);
   EXPECT_TRUE(optimizer.ComputeMarginals(graph).has_value());
 }
 

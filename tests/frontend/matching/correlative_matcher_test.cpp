@@ -12,12 +12,12 @@
 namespace loopgrid {
 namespace {
 
-using Points = std::vector<Eigen::Vector2f>;
+using MatchPoints = std::vector<Eigen::Vector2f>;
 
 // One search: a table, the points to place, and where to look for them.
 struct Problem {
   LikelihoodTable table;
-  Points points;
+  MatchPoints points;
   SE2 center;
   SearchWindow window;
   double angle_step = 0.01;
@@ -26,8 +26,8 @@ struct Problem {
   CorrelativeSearch Search() const { return {table, points, center, window, angle_step, prior}; }
 };
 
-LikelihoodTable TableOf(const Points& reference, const SearchWindow& window, float resolution,
-                        float sigma, int levels) {
+LikelihoodTable MatchTable(const MatchPoints& reference, const SearchWindow& window,
+                           float resolution, float sigma, int levels) {
   Eigen::Vector2f lower = reference.front();
   Eigen::Vector2f upper = reference.front();
   for (const Eigen::Vector2f& p : reference) {
@@ -48,8 +48,8 @@ float Uniform(float low, float high, std::mt19937* random) {
   return std::uniform_real_distribution<float>(low, high)(*random);
 }
 
-Points RandomWalls(std::mt19937* random) {
-  Points points;
+MatchPoints RandomWalls(std::mt19937* random) {
+  MatchPoints points;
   const int walls = static_cast<int>((*random)() % 4) + 1;
   for (int w = 0; w < walls; ++w) {
     const Eigen::Vector2f from{Uniform(-2.0F, 2.0F, random), Uniform(-2.0F, 2.0F, random)};
@@ -70,8 +70,8 @@ Problem RandomProblem(unsigned seed) {
                             OneOf({0.0, 0.01, 0.07}, &random)};
   const float resolution = OneOf({0.05F, 0.1F}, &random);
   const int levels = static_cast<int>(random() % 6) + 1;
-  const Points reference = RandomWalls(&random);
-  Problem problem{.table = TableOf(reference, window, resolution, 0.08F, levels),
+  const MatchPoints reference = RandomWalls(&random);
+  Problem problem{.table = MatchTable(reference, window, resolution, 0.08F, levels),
                   .points = {},
                   .center = SE2{Uniform(-5, 5, &random), Uniform(-5, 5, &random), 1.0 * seed},
                   .window = window};
@@ -118,7 +118,7 @@ SearchResult TryAll(const CorrelativeSearch& search, double min_score,
   return best;
 }
 
-void ExpectSame(const SearchResult& result, const SearchResult& expected) {
+void ExpectSameMatch(const SearchResult& result, const SearchResult& expected) {
   ASSERT_EQ(result.found, expected.found);
   if (!expected.found) return;
   EXPECT_EQ(result.offset.x, expected.offset.x);
@@ -134,9 +134,9 @@ TEST(CorrelativeSearch, FindsWhatTryingEveryCandidateFinds) {
     const Problem problem = RandomProblem(seed);
     const CorrelativeSearch search = problem.Search();
     const SearchResult expected = TryAll(search, -1e9);
-    ExpectSame(search.Best(-10.0), expected.score > -10.0 ? expected : SearchResult{});
+    ExpectSameMatch(search.Best(-10.0), expected.score > -10.0 ? expected : SearchResult{});
     const double half_unit = 0.5 / (255.0 * static_cast<double>(problem.points.size()));
-    ExpectSame(search.Best(expected.score - half_unit), expected);
+    ExpectSameMatch(search.Best(expected.score - half_unit), expected);
     EXPECT_FALSE(search.Best(expected.score + half_unit).found);
     EXPECT_FALSE(search.Best(2.0).found);
   }
@@ -151,7 +151,7 @@ TEST(CorrelativeSearch, FindsTheBestAwayFromAPeakAsTryingEveryCandidateDoes) {
     for (const Excluded& excluded :
          {Excluded{peak, 0, 0}, {peak, 2, 1}, {peak, 5, 100}, {peak, 100, 0}, {peak, 100, 100}}) {
       const SearchResult expected = TryAll(search, -50.0, excluded);
-      ExpectSame(search.BestAwayFrom(peak, excluded.cells, excluded.steps, -50.0), expected);
+      ExpectSameMatch(search.BestAwayFrom(peak, excluded.cells, excluded.steps, -50.0), expected);
       const double too_much = expected.found ? expected.score + 1e-4 : 0.0;
       EXPECT_FALSE(
           search.BestAwayFrom(peak, excluded.cells, excluded.steps, too_much + 1e-9).found);
@@ -161,7 +161,7 @@ TEST(CorrelativeSearch, FindsTheBestAwayFromAPeakAsTryingEveryCandidateDoes) {
 
 TEST(CorrelativeSearch, GivesTheFirstByAngleThenYThenXOfEqualCandidates) {
   // Reference points in every cell: all candidates are perfect.
-  Points everywhere;
+  MatchPoints everywhere;
   for (int x = -80; x <= 80; ++x) {
     for (int y = -80; y <= 80; ++y) {
       everywhere.emplace_back(0.025F * static_cast<float>(x), 0.025F * static_cast<float>(y));
@@ -169,8 +169,8 @@ TEST(CorrelativeSearch, GivesTheFirstByAngleThenYThenXOfEqualCandidates) {
   }
   for (int levels = 1; levels <= 6; ++levels) {
     const SearchWindow window{0.3, 0.2, 0.05};
-    const LikelihoodTable full = TableOf(everywhere, window, 0.05F, 0.05F, levels);
-    const Points points = {{0.5F, 0.5F}, {-0.7F, 0.1F}};
+    const LikelihoodTable full = MatchTable(everywhere, window, 0.05F, 0.05F, levels);
+    const MatchPoints points = {{0.5F, 0.5F}, {-0.7F, 0.1F}};
     const CorrelativeSearch search(full, points, SE2(), window, 0.02);
     const SearchResult first = search.Best(0.5);
     EXPECT_EQ(first.offset, (SearchOffset{-6, -4, -3})) << levels;
@@ -186,10 +186,10 @@ TEST(CorrelativeSearch, GivesTheFirstByAngleThenYThenXOfEqualCandidates) {
 
 TEST(CorrelativeSearch, OfTwoEqualPeaksTakesTheFirst) {
   const SearchWindow window{0.5, 0.5, 0.0};
-  const Points pair = {{-0.375F, 0.025F}, {0.425F, 0.025F}};
+  const MatchPoints pair = {{-0.375F, 0.025F}, {0.425F, 0.025F}};
   for (int levels = 1; levels <= 5; ++levels) {
-    const LikelihoodTable table = TableOf(pair, window, 0.05F, 0.02F, levels);
-    const Points one = {{0.025F, 0.025F}};
+    const LikelihoodTable table = MatchTable(pair, window, 0.05F, 0.02F, levels);
+    const MatchPoints one = {{0.025F, 0.025F}};
     const CorrelativeSearch search(table, one, SE2(), window, 0.01);
     EXPECT_EQ(search.Best(0.1).offset, (SearchOffset{-8, 0, 0})) << levels;
     EXPECT_EQ(search.BestAwayFrom({-8, 0, 0}, 3, 0, 0.1).offset, (SearchOffset{8, 0, 0}));
@@ -200,7 +200,7 @@ TEST(CorrelativeSearch, InAnEmptyTableEveryCandidateScoresZero) {
   const SearchWindow window{0.3, 0.3, 0.1};
   const int margin = CorrelativeSearch::MarginFor(window, 0.05F, 4);
   const LikelihoodTable table({}, {-1.0F, -1.0F}, {1.0F, 1.0F}, margin, 0.05F, 0.07F, 4);
-  const Points points = {{0.5F, 0.5F}, {-0.7F, 0.1F}};
+  const MatchPoints points = {{0.5F, 0.5F}, {-0.7F, 0.1F}};
   const CorrelativeSearch search(table, points, SE2(), window, 0.05);
   EXPECT_FALSE(search.Best(0.0).found);
   EXPECT_EQ(search.Best(-0.1).offset, (SearchOffset{-6, -6, -2}));
@@ -250,8 +250,8 @@ TEST(CorrelativeSearch, ScoreIsTheTablesMeanUnderThePointsLessThePriorsShare) {
 
 TEST(CorrelativeSearch, CoversTheWindowInWholeCellsAndSteps) {
   const SearchWindow window{0.3, 0.12, 0.05};
-  const LikelihoodTable table = TableOf({{0.0F, 0.0F}}, window, 0.05F, 0.07F, 3);
-  const Points points = {{0.0F, 0.0F}};
+  const LikelihoodTable table = MatchTable({{0.0F, 0.0F}}, window, 0.05F, 0.07F, 3);
+  const MatchPoints points = {{0.0F, 0.0F}};
   const CorrelativeSearch search(table, points, SE2(1.0, 2.0, 3.0), window, 0.02);
   EXPECT_EQ(search.cells_x(), 6);
   EXPECT_EQ(search.cells_y(), 3);

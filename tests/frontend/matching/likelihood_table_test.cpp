@@ -10,11 +10,11 @@
 namespace loopgrid {
 namespace {
 
-using Points = std::vector<Eigen::Vector2f>;
+using TablePoints = std::vector<Eigen::Vector2f>;
 
-Points RandomPoints(int count, float reach, std::mt19937* random) {
+TablePoints RandomPoints(int count, float reach, std::mt19937* random) {
   std::uniform_real_distribution<float> coordinate(-reach, reach);
-  Points points;
+  TablePoints points;
   for (int i = 0; i < count; ++i) points.emplace_back(coordinate(*random), coordinate(*random));
   return points;
 }
@@ -24,7 +24,7 @@ int ValueIn(const LikelihoodTable& table, int level, int x, int y) {
 }
 
 // The largest of the kernels of all points, by the distance of their cells.
-int NaiveValue(const LikelihoodTable& table, const Points& points, int x, int y) {
+int NaiveValue(const LikelihoodTable& table, const TablePoints& points, int x, int y) {
   const auto resolution = static_cast<double>(table.resolution());
   const auto sigma = static_cast<double>(table.sigma());
   const int reach = static_cast<int>(std::ceil(3.0F * table.sigma() / table.resolution()));
@@ -48,7 +48,7 @@ TEST(LikelihoodTable, HoldsInEachCellTheLargestOfAllKernels) {
     const float resolution = seed % 2 == 0 ? 0.05F : 0.1F;
     const float sigma = 0.03F * static_cast<float>(seed % 4 + 1);
     // The points reach beyond the table: some lie near its edge, some outside.
-    const Points points = RandomPoints(static_cast<int>(seed) * 3, 2.5F, &random);
+    const TablePoints points = RandomPoints(static_cast<int>(seed) * 3, 2.5F, &random);
     const LikelihoodTable table(points, {-1.0F, -1.5F}, {1.7F, 1.0F}, static_cast<int>(seed % 5),
                                 resolution, sigma, 1);
     for (int y = 0; y < table.height(); ++y) {
@@ -97,7 +97,7 @@ TEST(LikelihoodTable, CoversTheBoxAndItsMargin) {
 }
 
 TEST(LikelihoodTable, IsZeroOutside) {
-  const Points points = {{0.05F, 0.05F}};
+  const TablePoints points = {{0.05F, 0.05F}};
   const LikelihoodTable table(points, {0.0F, 0.0F}, {0.1F, 0.1F}, 4, 0.1F, 0.1F, 1);
   EXPECT_EQ(table.At(table.CellOf(points[0])), 255);
   EXPECT_EQ(table.At({-1, 4}), 0);

@@ -21,26 +21,26 @@ using test_support::PortableRandom;
 using test_support::ScanFrom;
 using test_support::SimulatedLaser;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRefinerDegree = std::numbers::pi / 180.0;
 
-const std::array<SE2, 3> kMapPoses = {SE2(), SE2(1.5, 2.0, 1.0), SE2(-2.5, -1.5, 2.0)};
+const std::array<SE2, 3> kRefinerMapPoses = {SE2(), SE2(1.5, 2.0, 1.0), SE2(-2.5, -1.5, 2.0)};
 
 PosePrior NoPrior(const SE2& pose) { return {pose, Eigen::Matrix3d::Zero()}; }
 
 TEST(RefineMatch, RecoversADisplacedPoseToAMillimetre) {
-  const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses);
+  const LocalMap map = MapFrom(DistinctiveRoom(), kRefinerMapPoses);
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     PortableRandom random(seed);
     const SE2 truth{random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3)};
     const double way = random.Uniform(-3.0, 3.0);
     const SE2 start = truth.Boxplus(
-        {0.1 * std::cos(way), 0.1 * std::sin(way), random.Uniform(-3.0, 3.0) * kDegree});
+        {0.1 * std::cos(way), 0.1 * std::sin(way), random.Uniform(-3.0, 3.0) * kRefinerDegree});
     const PointScan scan = ScanFrom(DistinctiveRoom(), truth);
     const RefinedMatch match = RefineMatch(map, scan, start, NoPrior(start));
     const Eigen::Vector3d error = match.T_map_robot.Boxminus(truth);
     EXPECT_LT(error.head<2>().norm(), 1e-3);
-    EXPECT_LT(std::abs(error.z()), 0.02 * kDegree);
+    EXPECT_LT(std::abs(error.z()), 0.02 * kRefinerDegree);
     EXPECT_GT(match.inlier_share, 0.97);
     EXPECT_LT(match.residual, 5e-3);
     EXPECT_GT(match.used, 600);
@@ -68,7 +68,7 @@ double Cost(const LocalMap& map, const PointScan& scan, const SE2& solution, con
 }
 
 TEST(RefineMatch, EndsWhereTheNumericGradientOfTheCostVanishes) {
-  const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses, SimulatedLaser{});
+  const LocalMap map = MapFrom(DistinctiveRoom(), kRefinerMapPoses, SimulatedLaser{});
   RefinerOptions options;
   options.max_iterations = 100;
   options.normal_sigma = 0.0;  // so that the normal equations are those of the cost
@@ -96,7 +96,7 @@ TEST(RefineMatch, EndsWhereTheNumericGradientOfTheCostVanishes) {
 }
 
 TEST(RefineMatch, InformationIsTheSumOverNumericJacobians) {
-  const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses);
+  const LocalMap map = MapFrom(DistinctiveRoom(), kRefinerMapPoses);
   const SE2 truth(0.4, -0.3, 0.7);
   const PointScan scan = ScanFrom(DistinctiveRoom(), truth, ExactLaser(360));
   RefinerOptions options;
@@ -169,7 +169,7 @@ TEST(RefineMatch, WithoutSurfacesStaysOrGoesToThePrior) {
 }
 
 TEST(RefineMatch, YieldsNumbersFromAwkwardScans) {
-  const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses);
+  const LocalMap map = MapFrom(DistinctiveRoom(), kRefinerMapPoses);
   PointScan at_the_laser;  // hits without any lever
   for (int i = 0; i < 30; ++i) {
     at_the_laser.hits.emplace_back(0.0F, 0.0F);
@@ -192,7 +192,7 @@ TEST(RefineMatch, YieldsNumbersFromAwkwardScans) {
 }
 
 TEST(RefineMatch, IsNotPulledAwayByWhatIsNotInTheMap) {
-  const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses);
+  const LocalMap map = MapFrom(DistinctiveRoom(), kRefinerMapPoses);
   test_support::World with_people = DistinctiveRoom();
   with_people.AddBox({1.0, 0.9}, {0.3, 0.3});
   with_people.AddBox({-1.0, -1.2}, {0.4, 0.3});

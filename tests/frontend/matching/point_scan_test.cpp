@@ -18,12 +18,12 @@ using test_support::ScanFrom;
 using test_support::SimulatedLaser;
 using test_support::World;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kScanPi = std::numbers::pi;
 
-LaserScan ScanOf(std::vector<float> ranges) {
+LaserScan BeamScanOf(std::vector<float> ranges) {
   LaserScan scan;
-  scan.first_angle = -0.5 * kPi;
-  scan.angle_step = kPi / 180.0;
+  scan.first_angle = -0.5 * kScanPi;
+  scan.angle_step = kScanPi / 180.0;
   scan.ranges = std::move(ranges);
   return scan;
 }
@@ -37,10 +37,10 @@ World WallAt(double d, double angle) {
 }
 
 TEST(MakePointScan, PlacesEachReadingAlongItsBeam) {
-  LaserScan scan = ScanOf({1.0F, 2.0F, 3.0F});
+  LaserScan scan = BeamScanOf({1.0F, 2.0F, 3.0F});
   scan.first_angle = -0.5;
   scan.angle_step = 0.25;
-  for (const SE2& mount : {SE2(), SE2(0.3, -0.1, 0.0), SE2(0.2, 0.0, 2.5), SE2(0, 0, kPi)}) {
+  for (const SE2& mount : {SE2(), SE2(0.3, -0.1, 0.0), SE2(0.2, 0.0, 2.5), SE2(0, 0, kScanPi)}) {
     scan.T_robot_laser = mount;
     const PointScan points = MakePointScan(scan, 0.05, 40.0);
     ASSERT_EQ(points.size(), 3U);
@@ -56,9 +56,9 @@ TEST(MakePointScan, PlacesEachReadingAlongItsBeam) {
 }
 
 TEST(MakePointScan, TakesBeamsThatRunClockwise) {
-  LaserScan scan = ScanOf({1.0F, 1.0F});
-  scan.first_angle = 0.5 * kPi;
-  scan.angle_step = -0.5 * kPi;
+  LaserScan scan = BeamScanOf({1.0F, 1.0F});
+  scan.first_angle = 0.5 * kScanPi;
+  scan.angle_step = -0.5 * kScanPi;
   const PointScan points = MakePointScan(scan, 0.05, 40.0);
   EXPECT_NEAR((points.hits[0] - Eigen::Vector2f(0.0F, 1.0F)).norm(), 0.0, 1e-6);
   EXPECT_NEAR((points.hits[1] - Eigen::Vector2f(1.0F, 0.0F)).norm(), 0.0, 1e-6);
@@ -66,13 +66,13 @@ TEST(MakePointScan, TakesBeamsThatRunClockwise) {
 
 TEST(MakePointScan, KeepsHitsBetweenTheLimitsAndNoReturnsFromTheUpperOneOn) {
   const float just_below = std::nextafter(8.0F, 0.0F);
-  LaserScan scan = ScanOf({0.0F, 0.04F, 0.0625F, just_below, 8.0F, 81.83F, kFarthestReading});
-  scan.T_robot_laser = SE2(0.2, 0.1, 0.5 * kPi);
+  LaserScan scan = BeamScanOf({0.0F, 0.04F, 0.0625F, just_below, 8.0F, 81.83F, kFarthestReading});
+  scan.T_robot_laser = SE2(0.2, 0.1, 0.5 * kScanPi);
   const PointScan points = MakePointScan(scan, 0.0625, 8.0);
   EXPECT_EQ(points.size(), 2U);
   ASSERT_EQ(points.no_returns.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double angle = (static_cast<double>(i) + 4.0) * kPi / 180.0;  // beams 4, 5 and 6
+    const double angle = (static_cast<double>(i) + 4.0) * kScanPi / 180.0;  // beams 4, 5 and 6
     const Eigen::Vector2d expected(std::cos(angle), std::sin(angle));
     EXPECT_NEAR((points.no_returns[i].cast<double>() - expected).norm(), 0.0, 1e-6);
   }
@@ -80,20 +80,20 @@ TEST(MakePointScan, KeepsHitsBetweenTheLimitsAndNoReturnsFromTheUpperOneOn) {
 
 TEST(MakePointScan, DropsReadingsThatAreNoNumber) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const PointScan points = MakePointScan(ScanOf({nan, 1.0F, nan}), 0.05, 40.0);
+  const PointScan points = MakePointScan(BeamScanOf({nan, 1.0F, nan}), 0.05, 40.0);
   EXPECT_EQ(points.size(), 1U);
   EXPECT_TRUE(points.no_returns.empty());
 }
 
 TEST(MakePointScan, OfNoReturnsAloneHasNoHits) {
-  const PointScan points = MakePointScan(ScanOf(std::vector<float>(180, 81.83F)), 0.05, 40.0);
+  const PointScan points = MakePointScan(BeamScanOf(std::vector<float>(180, 81.83F)), 0.05, 40.0);
   EXPECT_EQ(points.size(), 0U);
   EXPECT_TRUE(points.normals.empty());
   EXPECT_EQ(points.no_returns.size(), 180U);
 }
 
 TEST(MakePointScan, NormalsStandOnAStraightWallAndFaceTheLaser) {
-  for (double angle : {0.0, 0.3, 0.5 * kPi, 2.0, kPi, -1.1, -3.0}) {
+  for (double angle : {0.0, 0.3, 0.5 * kScanPi, 2.0, kScanPi, -1.1, -3.0}) {
     for (double offset : {0.0, 0.25, -0.4}) {
       SCOPED_TRACE(angle);
       SimulatedLaser laser = ExactLaser(360);
@@ -134,7 +134,7 @@ TEST(MakePointScan, LonePointsAndPairsHaveNoNormal) {
   ranges[60] = ranges[61] = 2.0F;  // a pair
   ranges[99] = 2.0F;               // a post of three beams ...
   ranges[100] = ranges[101] = 2.0F;
-  const PointScan points = MakePointScan(ScanOf(ranges), 0.05, 40.0);
+  const PointScan points = MakePointScan(BeamScanOf(ranges), 0.05, 40.0);
   ASSERT_EQ(points.size(), 6U);
   for (std::size_t i : {0U, 1U, 2U}) EXPECT_TRUE(points.normals[i].isZero()) << i;
   for (std::size_t i : {3U, 4U, 5U}) EXPECT_FALSE(points.normals[i].isZero()) << i;
@@ -144,7 +144,7 @@ TEST(MakePointScan, NoNormalIsTakenAcrossAGap) {
   // Every other point is 2 m behind: no two neighbours belong together.
   std::vector<float> ranges;
   for (int i = 0; i < 180; ++i) ranges.push_back(i % 2 == 0 ? 2.0F : 4.0F);
-  for (const Eigen::Vector2f& normal : MakePointScan(ScanOf(ranges), 0.05, 40.0).normals) {
+  for (const Eigen::Vector2f& normal : MakePointScan(BeamScanOf(ranges), 0.05, 40.0).normals) {
     EXPECT_TRUE(normal.isZero());
   }
   // A step in depth: both sides keep the normal of their own wall.
@@ -162,7 +162,7 @@ TEST(MakePointScan, ScatteredPointsHaveNoNormal) {
   test_support::PortableRandom random(5);
   std::vector<float> ranges;
   for (int i = 0; i < 180; ++i) ranges.push_back(static_cast<float>(random.Uniform(2.0, 2.2)));
-  const PointScan points = MakePointScan(ScanOf(ranges), 0.05, 40.0);
+  const PointScan points = MakePointScan(BeamScanOf(ranges), 0.05, 40.0);
   int with_normal = 0;
   for (const Eigen::Vector2f& normal : points.normals) with_normal += normal.isZero() ? 0 : 1;
   EXPECT_LT(with_normal, 20);

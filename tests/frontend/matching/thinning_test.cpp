@@ -10,17 +10,17 @@
 namespace loopgrid {
 namespace {
 
-using Points = std::vector<Eigen::Vector2f>;
+using ThinnedPoints = std::vector<Eigen::Vector2f>;
 
 TEST(ThinPoints, KeepsConsecutivePointsApartAndDropsNoneThatAreFar) {
   std::mt19937 random(3);
   std::normal_distribution<float> step(0.0F, 0.04F);
-  Points points = {{1.0F, 2.0F}};
+  ThinnedPoints points = {{1.0F, 2.0F}};
   for (int i = 0; i < 2000; ++i) {
     points.emplace_back(points.back() + Eigen::Vector2f(step(random), step(random)));
   }
   for (float spacing : {0.02F, 0.05F, 0.3F}) {
-    const Points kept = ThinPoints(points, spacing);
+    const ThinnedPoints kept = ThinPoints(points, spacing);
     EXPECT_EQ(kept.front(), points.front());
     auto next = kept.begin();  // in order, and each dropped point close to the last one kept
     for (const Eigen::Vector2f& p : points) {
@@ -37,7 +37,7 @@ TEST(ThinPoints, KeepsConsecutivePointsApartAndDropsNoneThatAreFar) {
 }
 
 TEST(ThinPoints, KeepsAllWithoutSpacingAndNoneOfNone) {
-  const Points points = {{0.0F, 0.0F}, {0.0F, 0.0F}, {1.0F, 0.0F}};
+  const ThinnedPoints points = {{0.0F, 0.0F}, {0.0F, 0.0F}, {1.0F, 0.0F}};
   EXPECT_EQ(ThinPoints(points, 0.0F), points);
   EXPECT_EQ(ThinPoints(points, 0.1F).size(), 2U);
   EXPECT_TRUE(ThinPoints({}, 0.1F).empty());
@@ -48,7 +48,7 @@ TEST(AngleStepFor, MovesFourFifthsOfThePointsByNoMoreThanACell) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> range(3.0F, 12.0F);
-    Points points;
+    ThinnedPoints points;
     for (int i = 0; i < 200; ++i) {
       const float angle = 0.03F * static_cast<float>(i);
       points.emplace_back(range(random) * Eigen::Vector2f(std::cos(angle), std::sin(angle)));
@@ -64,9 +64,9 @@ TEST(AngleStepFor, MovesFourFifthsOfThePointsByNoMoreThanACell) {
 
 TEST(AngleStepFor, StaysWithinItsBounds) {
   EXPECT_EQ(AngleStepFor({}, 0.05), 0.02);
-  EXPECT_EQ(AngleStepFor(Points(10, {0.0F, 0.0F}), 0.05), 0.02);
-  EXPECT_EQ(AngleStepFor(Points(1, {0.01F, 0.0F}), 0.05), 0.02);
-  EXPECT_EQ(AngleStepFor(Points(10, {100.0F, 0.0F}), 0.05), 0.004);
+  EXPECT_EQ(AngleStepFor(ThinnedPoints(10, {0.0F, 0.0F}), 0.05), 0.02);
+  EXPECT_EQ(AngleStepFor(ThinnedPoints(1, {0.01F, 0.0F}), 0.05), 0.02);
+  EXPECT_EQ(AngleStepFor(ThinnedPoints(10, {100.0F, 0.0F}), 0.05), 0.004);
 }
 
 }  // namespace

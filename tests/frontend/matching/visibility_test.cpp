@@ -23,7 +23,7 @@ World OneWall(double x) {
   return world;
 }
 
-LocalMap MapOf(const World& world, const SimulatedLaser& laser = ExactLaser()) {
+LocalMap VisibleMapOf(const World& world, const SimulatedLaser& laser = ExactLaser()) {
   return MapFrom(world, std::array<SE2, 1>{SE2()}, laser);
 }
 
@@ -44,19 +44,19 @@ TEST(CompareVisibility, AScanInItsPlaceDeniesNothing) {
 
 TEST(CompareVisibility, AWallInFrontOfWhereBeamsEndedIsDenied) {
   const PointScan scan = ScanFrom(OneWall(4.0), SE2());
-  const Visibility nearer = CompareVisibility(MapOf(OneWall(3.0)), scan, SE2());
+  const Visibility nearer = CompareVisibility(VisibleMapOf(OneWall(3.0)), scan, SE2());
   EXPECT_EQ(nearer.confirmed, 0);
   EXPECT_GE(nearer.denied, 60);
   EXPECT_EQ(nearer.denied_share(), 1.0);
   // Within the tolerance it is the same wall.
-  const Visibility close = CompareVisibility(MapOf(OneWall(3.9)), scan, SE2());
+  const Visibility close = CompareVisibility(VisibleMapOf(OneWall(3.9)), scan, SE2());
   EXPECT_EQ(close.denied, 0);
   EXPECT_GE(close.confirmed, 60);
 }
 
 TEST(CompareVisibility, WallsBehindHitsSayNothing) {
   const Visibility visibility =
-      CompareVisibility(MapOf(OneWall(5.0)), ScanFrom(OneWall(2.0), SE2()), SE2());
+      CompareVisibility(VisibleMapOf(OneWall(5.0)), ScanFrom(OneWall(2.0), SE2()), SE2());
   EXPECT_EQ(visibility.denied, 0);
   EXPECT_EQ(visibility.confirmed, 0);
   EXPECT_EQ(visibility.denied_share(), 1.0);  // nothing speaks for the place
@@ -67,19 +67,20 @@ TEST(CompareVisibility, WallsOutsideTheFieldOfViewSayNothing) {
   ahead.first_angle = -0.5;
   ahead.angle_step = 1.0 / 180.0;
   const PointScan scan = ScanFrom(OneWall(6.0), SE2(), ahead);
-  const Visibility behind = CompareVisibility(MapOf(OneWall(-2.0)), scan, SE2());
+  const Visibility behind = CompareVisibility(VisibleMapOf(OneWall(-2.0)), scan, SE2());
   EXPECT_EQ(behind.denied + behind.confirmed, 0);
-  const Visibility turned = CompareVisibility(MapOf(OneWall(-2.0)), scan, SE2(0.0, 0.0, -3.1));
+  const Visibility turned =
+      CompareVisibility(VisibleMapOf(OneWall(-2.0)), scan, SE2(0.0, 0.0, -3.1));
   EXPECT_GT(turned.denied, 20);
 }
 
 TEST(CompareVisibility, BeamsThatMetNothingDenyWallsInTheirWay) {
   const PointScan nothing = ScanFrom(World{}, SE2());
   ASSERT_EQ(nothing.size(), 0U);
-  EXPECT_EQ(CompareVisibility(MapOf(OneWall(5.0)), nothing, SE2()).denied_share(), 1.0);
-  EXPECT_GE(CompareVisibility(MapOf(OneWall(5.0)), nothing, SE2()).denied, 60);
+  EXPECT_EQ(CompareVisibility(VisibleMapOf(OneWall(5.0)), nothing, SE2()).denied_share(), 1.0);
+  EXPECT_GE(CompareVisibility(VisibleMapOf(OneWall(5.0)), nothing, SE2()).denied, 60);
   // Too far to say: a small turn misses a surface.
-  const Visibility far = CompareVisibility(MapOf(OneWall(13.0)), nothing, SE2());
+  const Visibility far = CompareVisibility(VisibleMapOf(OneWall(13.0)), nothing, SE2());
   EXPECT_EQ(far.denied + far.confirmed, 0);
 }
 
@@ -93,7 +94,7 @@ TEST(CompareVisibility, OnlyFacesTurnedToTheLaserCount) {
 TEST(CompareVisibility, WithoutAMapOrBeamsNothingIsInView) {
   const PointScan scan = ScanFrom(OneWall(2.0), SE2());
   EXPECT_EQ(CompareVisibility(LocalMap(), scan, SE2()).denied_share(), 1.0);
-  EXPECT_EQ(CompareVisibility(MapOf(OneWall(2.0)), PointScan(), SE2()).denied_share(), 1.0);
+  EXPECT_EQ(CompareVisibility(VisibleMapOf(OneWall(2.0)), PointScan(), SE2()).denied_share(), 1.0);
 }
 
 TEST(Visibility, DeniedShareIsThatOfTheSurfelsInView) {

@@ -21,7 +21,7 @@ using test_support::SimulatedRun;
 using test_support::SimulationOptions;
 using test_support::World;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kTrackerDegree = std::numbers::pi / 180.0;
 
 PointScan PointsOf(const Observation& observation) {
   return MakePointScan(observation.scan, 0.05, 30.0);
@@ -72,7 +72,7 @@ TEST(Tracker, FollowsARobotWithBadOdometry) {
       ASSERT_TRUE(tracked.matched) << i;
       const Eigen::Vector3d error = tracked.T_map_robot.Boxminus(run.true_poses[i]);
       ASSERT_LT(error.head<2>().norm(), 0.05) << i;
-      ASSERT_LT(std::abs(error.z()), 1.0 * kDegree) << i;
+      ASSERT_LT(std::abs(error.z()), 1.0 * kTrackerDegree) << i;
       EXPECT_GT(tracked.covariance.diagonal().minCoeff(), 0.0);
       if (i % 3 == 0) {
         placed.push_back({scans[i].get(), tracked.T_map_robot});
@@ -97,7 +97,7 @@ int FoundOfFifty(double metres, double radians) {
     const PointScan scan = ScanFrom(DistinctiveRoom(), truth, SimulatedLaser{}, seed);
     const TrackedPose tracked = tracker.Track(scan, start.Inverse() * truth * jump);
     const Eigen::Vector3d error = tracked.T_map_robot.Boxminus(truth);
-    const bool right = error.head<2>().norm() < 0.05 && std::abs(error.z()) < kDegree;
+    const bool right = error.head<2>().norm() < 0.05 && std::abs(error.z()) < kTrackerDegree;
     found += tracked.matched && right ? 1 : 0;
   }
   return found;

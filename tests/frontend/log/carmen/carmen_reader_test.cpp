@@ -151,13 +151,13 @@ TEST(CarmenReader, TheBeamCountMayChangeInMidLog) {
                               Flaser(std::vector<double>(180, 1.0), SE2(), 3.0);
   const WholeLog log = ReadWholeLogFrom(content);
   ASSERT_EQ(log.observations.size(), 3U);
-  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr double kRadians = std::numbers::pi / 180.0;
   const double steps[] = {1.0, 0.5, 1.0};
   const std::size_t counts[] = {181, 361, 180};
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(log.observations[i].scan.ranges.size(), counts[i]);
-    EXPECT_NEAR(log.observations[i].scan.angle_step, steps[i] * kDegree, 1e-12);
-    EXPECT_NEAR(log.observations[i].scan.first_angle, -90.0 * kDegree, 1e-12);
+    EXPECT_NEAR(log.observations[i].scan.angle_step, steps[i] * kRadians, 1e-12);
+    EXPECT_NEAR(log.observations[i].scan.first_angle, -90.0 * kRadians, 1e-12);
   }
 }
 

@@ -18,7 +18,7 @@ SE2 Driven(int scan) {
   return pose;
 }
 
-void ExpectSame(const SE2& a, const SE2& b) {
+void ExpectSameMount(const SE2& a, const SE2& b) {
   EXPECT_LT(a.Boxminus(b).cwiseAbs().maxCoeff(), 1e-9) << a.coordinates().transpose();
 }
 
@@ -26,7 +26,7 @@ TEST(LaserMount, EqualPosesMeanTheFallbackAtOnce) {
   LaserMount mount(kFallback);
   mount.Add(Driven(0), Driven(0));
   EXPECT_TRUE(mount.decided());
-  ExpectSame(mount.T_robot_laser(), kFallback);
+  ExpectSameMount(mount.T_robot_laser(), kFallback);
 }
 
 TEST(LaserMount, IsProvenByAConstantDifferenceOnceTheRobotHasDrivenAndTurned) {
@@ -35,7 +35,7 @@ TEST(LaserMount, IsProvenByAConstantDifferenceOnceTheRobotHasDrivenAndTurned) {
   for (; !mount.decided() && scan < 100; ++scan) mount.Add(Driven(scan) * kMount, Driven(scan));
   EXPECT_GE(scan, 10);
   EXPECT_LE(scan, 13);
-  ExpectSame(mount.T_robot_laser(), kMount);
+  ExpectSameMount(mount.T_robot_laser(), kMount);
 }
 
 TEST(LaserMount, NeitherDrivingNorTurningAloneProvesIt) {
@@ -59,7 +59,7 @@ TEST(LaserMount, AnotherMappersCorrectionsAreNoMount) {
       mount.Add(T_map_odom * T_odom_robot, T_odom_robot);
     }
     EXPECT_TRUE(mount.decided());
-    ExpectSame(mount.T_robot_laser(), kFallback);
+    ExpectSameMount(mount.T_robot_laser(), kFallback);
   }
 }
 
@@ -67,7 +67,7 @@ TEST(LaserMount, NoRobotIsThatLarge) {
   LaserMount mount(kFallback);
   mount.Add(Driven(0) * SE2(2.5, 0.0, 0.0), Driven(0));
   EXPECT_TRUE(mount.decided());
-  ExpectSame(mount.T_robot_laser(), kFallback);
+  ExpectSameMount(mount.T_robot_laser(), kFallback);
 }
 
 TEST(LaserMount, ToleratesRoundedNumbers) {
@@ -89,7 +89,7 @@ TEST(LaserMount, StandingStillForLongSettlesForTheDifference) {
     ++messages;
   }
   EXPECT_LE(messages, 1'000);
-  ExpectSame(mount.T_robot_laser(), kMount);
+  ExpectSameMount(mount.T_robot_laser(), kMount);
 }
 
 TEST(LaserMount, TheEndOfTheLogSettlesForTheDifference) {
@@ -98,13 +98,13 @@ TEST(LaserMount, TheEndOfTheLogSettlesForTheDifference) {
   EXPECT_FALSE(mount.decided());
   mount.Decide();
   EXPECT_TRUE(mount.decided());
-  ExpectSame(mount.T_robot_laser(), kMount);
+  ExpectSameMount(mount.T_robot_laser(), kMount);
 }
 
 TEST(LaserMount, WithoutAnyMessageIsTheFallback) {
   LaserMount mount(kFallback);
   mount.Decide();
-  ExpectSame(mount.T_robot_laser(), kFallback);
+  ExpectSameMount(mount.T_robot_laser(), kFallback);
 }
 
 TEST(LaserMount, CanBeSet) {
@@ -112,7 +112,7 @@ TEST(LaserMount, CanBeSet) {
   mount.Add(Driven(0) * kMount, Driven(0));
   mount.Set(SE2(1.0, 0.0, 0.0));
   EXPECT_TRUE(mount.decided());
-  ExpectSame(mount.T_robot_laser(), SE2(1.0, 0.0, 0.0));
+  ExpectSameMount(mount.T_robot_laser(), SE2(1.0, 0.0, 0.0));
 }
 
 }  // namespace

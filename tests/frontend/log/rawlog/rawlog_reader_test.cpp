@@ -41,7 +41,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kRawlogPi = std::numbers::pi;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Collects the bytes of a rawlog.
@@ -84,7 +84,7 @@ CObservation2DRangeScan Scan(const std::vector<float>& ranges, double time = 1.0
   return scan;
 }
 
-WholeLog Read(const RawlogBytes& bytes) { return ReadWholeLogFrom(bytes.str()); }
+WholeLog ReadAll(const RawlogBytes& bytes) { return ReadWholeLogFrom(bytes.str()); }
 
 void ExpectPose(const SE2& pose, double x, double y, double theta) {
   EXPECT_LT(pose.Boxminus(SE2(x, y, theta)).cwiseAbs().maxCoeff(), 1e-9)
@@ -94,13 +94,13 @@ void ExpectPose(const SE2& pose, double x, double y, double theta) {
 TEST(RawlogReader, AddsUpTheIncrementsOfActions) {
   RawlogBytes bytes;
   bytes.AddFrame({Scan({1.0F, 2.0F, 3.0F}, 5.0)});
-  bytes.AddMovement(CPose2D(1.0, 0.0, kPi / 2.0)).AddFrame({Scan({4.0F, 5.0F, 6.0F}, 6.5)});
+  bytes.AddMovement(CPose2D(1.0, 0.0, kRawlogPi / 2.0)).AddFrame({Scan({4.0F, 5.0F, 6.0F}, 6.5)});
   bytes.AddMovement(CPose2D(2.0, 1.0, 0.0)).AddFrame({Scan({7.0F, 8.0F, 9.0F}, 6.0)});
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(3));
   ExpectPose(log.observations[0].T_odom_robot, 0.0, 0.0, 0.0);
-  ExpectPose(log.observations[1].T_odom_robot, 1.0, 0.0, kPi / 2.0);
-  ExpectPose(log.observations[2].T_odom_robot, 0.0, 2.0, kPi / 2.0);
+  ExpectPose(log.observations[1].T_odom_robot, 1.0, 0.0, kRawlogPi / 2.0);
+  ExpectPose(log.observations[2].T_odom_robot, 0.0, 2.0, kRawlogPi / 2.0);
   EXPECT_EQ(log.observations[1].timestamp, 6.5);
   EXPECT_THAT(log.observations[1].scan.ranges, ElementsAre(4.0F, 5.0F, 6.0F));
   EXPECT_EQ(log.statistics.lines, 5);
@@ -118,7 +118,7 @@ TEST(RawlogReader, TakesTheMeanOfAMovementThatIsNoOdometry) {
   actions.insert(movement);
   RawlogBytes bytes;
   bytes.Add(actions).AddFrame({Scan({1.0F, 2.0F})});
-  ExpectPose(Read(bytes).observations.at(0).T_odom_robot, 0.5, 0.25, 0.125);
+  ExpectPose(ReadAll(bytes).observations.at(0).T_odom_robot, 0.5, 0.25, 0.125);
 }
 
 TEST(RawlogReader, ReadsPlainObservationsWithAbsoluteOdometry) {
@@ -128,7 +128,7 @@ TEST(RawlogReader, ReadsPlainObservationsWithAbsoluteOdometry) {
   bytes.Add(odometry).Add(Scan({1.0F, 2.0F}, 5.0));
   odometry.odometry = CPose2D(3.0, 2.0, 0.25);
   bytes.Add(odometry).Add(Scan({3.0F, 4.0F}, 6.0)).Add(mrpt::obs::CObservationComment());
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   ExpectPose(log.observations[0].T_odom_robot, 1.0, 2.0, 0.5);
   ExpectPose(log.observations[1].T_odom_robot, 3.0, 2.0, 0.25);
@@ -144,7 +144,7 @@ TEST(RawlogReader, TheOdometryOfAFrameHoldsForItsScansWhereverItStands) {
   frame.insert(odometry);
   RawlogBytes bytes;
   bytes.Add(frame);
-  ExpectPose(Read(bytes).observations.at(0).T_odom_robot, 1.0, 2.0, 0.5);
+  ExpectPose(ReadAll(bytes).observations.at(0).T_odom_robot, 1.0, 2.0, 0.5);
 }
 
 TEST(RawlogReader, AbsoluteOdometryDoesNotMixIntoActions) {
@@ -152,7 +152,7 @@ TEST(RawlogReader, AbsoluteOdometryDoesNotMixIntoActions) {
   odometry.odometry = CPose2D(100.0, 0.0, 0.0);
   RawlogBytes bytes;
   bytes.AddMovement(CPose2D(1.0, 0.0, 0.0)).Add(odometry).Add(Scan({1.0F, 2.0F}));
-  ExpectPose(Read(bytes).observations.at(0).T_odom_robot, 1.0, 0.0, 0.0);
+  ExpectPose(ReadAll(bytes).observations.at(0).T_odom_robot, 1.0, 0.0, 0.0);
 }
 
 TEST(RawlogReader, SpansTheApertureInTheDirectionOfTheSweep) {
@@ -162,7 +162,7 @@ TEST(RawlogReader, SpansTheApertureInTheDirectionOfTheSweep) {
   bytes.Add(scan);
   scan.rightToLeft = false;
   bytes.Add(scan);
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   ExpectPose(log.observations[0].scan.T_robot_laser, 0.78, -0.1, 0.25);
   EXPECT_NEAR(log.observations[0].scan.first_angle, -1.0, 1e-6);
@@ -173,10 +173,10 @@ TEST(RawlogReader, SpansTheApertureInTheDirectionOfTheSweep) {
 
 TEST(RawlogReader, AnUpsideDownLaserSweepsTheOtherWay) {
   CObservation2DRangeScan scan = Scan({1.0F, 2.0F, 3.0F});
-  scan.sensorPose = CPose3D(0.2, 0.1, 0.3, 0.25, 0.0, kPi);
+  scan.sensorPose = CPose3D(0.2, 0.1, 0.3, 0.25, 0.0, kRawlogPi);
   RawlogBytes bytes;
   bytes.Add(scan);
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(1));
   const LaserScan& ours = log.observations[0].scan;
   // Beam by beam where MRPT's pose in space puts it.
@@ -197,12 +197,12 @@ TEST(RawlogReader, AnUpsideDownLaserSweepsTheOtherWay) {
 TEST(RawlogReader, TheReadingsOfASickAreNotStretched) {
   for (const auto& [count, step] : {std::pair{180, 1.0}, {181, 1.0}, {360, 0.5}, {361, 0.5}}) {
     CObservation2DRangeScan scan = Scan(std::vector<float>(static_cast<std::size_t>(count), 1.0F));
-    scan.aperture = static_cast<float>(kPi);
+    scan.aperture = static_cast<float>(kRawlogPi);
     RawlogBytes bytes;
     bytes.Add(scan);
-    const WholeLog log = Read(bytes);
-    EXPECT_NEAR(log.observations.at(0).scan.angle_step, step * kPi / 180.0, 1e-6);
-    EXPECT_NEAR(log.observations.at(0).scan.first_angle, -kPi / 2.0, 1e-6);
+    const WholeLog log = ReadAll(bytes);
+    EXPECT_NEAR(log.observations.at(0).scan.angle_step, step * kRawlogPi / 180.0, 1e-6);
+    EXPECT_NEAR(log.observations.at(0).scan.first_angle, -kRawlogPi / 2.0, 1e-6);
   }
 }
 
@@ -213,7 +213,7 @@ TEST(RawlogReader, InvalidReadingsAreGivenOutAsTheMaximumRange) {
   bytes.Add(scan);
   scan.maxRange = kNan;
   bytes.Add(scan);
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   EXPECT_EQ(log.observations[0].scan.max_range, 30.0);
   EXPECT_THAT(log.observations[0].scan.ranges,
@@ -256,7 +256,7 @@ TEST(RawlogReader, RefusesOdometryThatIsNotFinite) {
   bytes.Add(odometry).Add(Scan({1.0F, 2.0F}));
   bytes.AddMovement(CPose2D(1.0, 0.0, 0.0)).AddMovement(CPose2D(nan, 0.0, 0.0));
   bytes.AddMovement(CPose2D(1e9, 0.0, 0.0)).Add(Scan({1.0F, 2.0F}));
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   ExpectPose(log.observations[0].T_odom_robot, 0.0, 0.0, 0.0);
   ExpectPose(log.observations[1].T_odom_robot, 1.0, 0.0, 0.0);
@@ -274,7 +274,7 @@ TEST(RawlogReader, UsesTheFirstHorizontalLaser) {
   CObservation2DRangeScan unlabelled = Scan({4.0F, 4.0F});
   RawlogBytes bytes;
   bytes.AddFrame({tilted, front, rear}).AddFrame({rear, unlabelled, front});
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   for (const Observation& observation : log.observations) {
     EXPECT_THAT(observation.scan.ranges, ElementsAre(2.0F, 2.0F));
@@ -285,10 +285,10 @@ TEST(RawlogReader, UsesTheFirstHorizontalLaser) {
 TEST(RawlogReader, TellsLasersWithoutLabelsApartByTheirPlace) {
   CObservation2DRangeScan front = Scan({2.0F, 2.0F});
   CObservation2DRangeScan rear = Scan({3.0F, 3.0F});
-  rear.sensorPose = CPose3D(-0.3, 0.0, 0.0, kPi, 0.0, 0.0);
+  rear.sensorPose = CPose3D(-0.3, 0.0, 0.0, kRawlogPi, 0.0, 0.0);
   RawlogBytes bytes;
   bytes.AddFrame({front, rear}).AddFrame({rear, front});
-  const WholeLog log = Read(bytes);
+  const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(2));
   EXPECT_EQ(log.observations[1].scan.ranges[0], 2.0F);
 }
@@ -298,7 +298,7 @@ TEST(RawlogReader, AScanWithoutTimeTakesThatOfTheOneBefore) {
   scan.timestamp = INVALID_TIMESTAMP;
   RawlogBytes bytes;
   bytes.Add(Scan({1.0F, 2.0F}, 5.0)).Add(scan);
-  EXPECT_EQ(Read(bytes).observations.at(1).timestamp, 5.0);
+  EXPECT_EQ(ReadAll(bytes).observations.at(1).timestamp, 5.0);
 }
 
 RawlogBytes SmallRawlog() {
@@ -416,7 +416,7 @@ TEST(RawlogReader, ReadsTheRecordingsThatDebianShips) {
   const LaserScan& scan = sena.observations[0].scan;
   EXPECT_THAT(scan.ranges, SizeIs(361));
   EXPECT_NEAR(scan.T_robot_laser.x(), 0.78, 1e-6);
-  EXPECT_NEAR(scan.angle_step, 0.5 * kPi / 180.0, 1e-6);
+  EXPECT_NEAR(scan.angle_step, 0.5 * kRawlogPi / 180.0, 1e-6);
   EXPECT_EQ(scan.max_range, 80.0);
   EXPECT_THAT(ReadWholeLog(test_support::MrptDataset("localization_demo.rawlog")).observations,
               SizeIs(37));
