@@ -16,9 +16,9 @@ constexpr double kSmallestScale = 1e-9;
 /// most.
 constexpr double kFreeDamping = 1e-14;
 
-/// A pivot that is so small a share of its diagonal entry has kept five digits in double precision.
-/// A step of the optimiser that is less exact is corrected by the next one; covariances are not.
-constexpr double kPivotForCovariances = 1e-11;
+/// A step that is not exact is corrected by the next one. Covariances are not: beyond this share of
+/// a pivot that may be rounding errors, they are computed with twice the digits.
+constexpr double kMostNoise = 1e-2;
 
 }  // namespace
 
@@ -57,15 +57,21 @@ Definiteness Linearization<Pose>::Factorize(double damping) {
 }
 
 template <typename Pose>
-Definiteness Linearization<Pose>::FactorizeForCovariances(const PoseGraph<Pose>& graph) {
-  const auto keeps_digits = [this] { return factor_.smallest_pivot() >= kPivotForCovariances; };
-  if (has_undamped_factor_ && keeps_digits()) return Definiteness::kDefinite;
-  Definiteness result = Definiteness::kDefinite;
-  if (!factor_.Factorize(equations_.hessian()) || !keeps_digits()) {
-    result = factor_.FactorizeExactly(ExactHessian(graph, objective_, equations_));
+Definiteness Linearization<Pose>::FactorizeForCovariances(const PoseGraph<Pose>& graph,
+                                                          bool careful) {
+  if (!has_undamped_factor_) {
+    const Definiteness result =
+        FactorizeHessian(graph, objective_, equations_, Eigen::VectorXd(), &factor_);
+    has_undamped_factor_ = result == Definiteness::kDefinite;
+    if (!has_undamped_factor_) return result;
   }
-  has_undamped_factor_ = result == Definiteness::kDefinite;
-  return result;
+  if (!careful || factor_.LargestNoise() <= kMostNoise) return Definiteness::kDefinite;
+  if (factor_.FactorizeExactly(ExactHessian(graph, objective_, equations_)) ==
+      Definiteness::kDefinite) {
+    return Definiteness::kDefinite;
+  }
+  // Its bounds of rounding errors are too large on long chains: there double precision is enough.
+  return FactorizeHessian(graph, objective_, equations_, Eigen::VectorXd(), &factor_);
 }
 
 template <typename Pose>

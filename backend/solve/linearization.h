@@ -35,9 +35,10 @@ class Linearization {
   /// weak for any other effect then keeps steps from going along them.
   [[nodiscard]] Definiteness Factorize(double damping);
 
-  /// Factorises H, unless the factor is that of H already. The graph is that of the last Linearize,
-  /// or equal to it.
-  [[nodiscard]] Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph);
+  /// Factorises H, unless the factor is that of H already; if `careful`, with twice the digits
+  /// where rounding errors might reach a hundredth of a pivot. The graph is that of the last
+  /// Linearize, or equal to it.
+  [[nodiscard]] Definiteness FactorizeForCovariances(const PoseGraph<Pose>& graph, bool careful);
 
   /// Whether the factor is that of H, positive definite and without damping, where it was
   /// linearised last.

@@ -113,7 +113,9 @@ std::optional<Marginals<Pose>> Optimizer<Pose>::ComputeMarginals(const PoseGraph
     linearization_.SetStructure(graph);
     linearization_.Linearize(graph, {options_.loss, Parametrization::kManifold});
   }
-  if (linearization_.FactorizeForCovariances(graph) != Definiteness::kDefinite) return std::nullopt;
+  if (linearization_.FactorizeForCovariances(graph, options_.careful_covariances) !=
+      Definiteness::kDefinite)
+    return std::nullopt;
   return linearization_.ComputeMarginals(graph);
 }
 

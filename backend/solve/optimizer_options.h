@@ -33,6 +33,10 @@ struct OptimizerOptions {
   bool graduated = false;
   int threads = 1;     ///< to linearise large graphs; the result does not depend on it
   bool trace = false;  ///< fill in OptimizerResult::trace
+  /// Compute covariances with twice the digits unless a bound says that double precision gives them
+  /// to a hundredth. It matters where information matrices differ by many orders of magnitude. The
+  /// bound is far too large on long chains, where this costs several times the time for nothing.
+  bool careful_covariances = true;
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;

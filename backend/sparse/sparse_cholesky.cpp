@@ -20,6 +20,9 @@ constexpr double kSmallestPivot = 1e-13;
 /// far from the origin. This is the square of 1e-14.
 constexpr double kExactNoise = 1e-28;
 
+/// The same in double precision: a few units in the last place.
+constexpr double kNoise = 1e-15;
+
 }  // namespace
 
 template <int kDim>
@@ -106,6 +109,24 @@ std::size_t SparseCholesky<kDim>::RowOfFront(int s, int i) const {
                       ? structure.first_column[ToIndex(s)] + block
                       : structure.rows[structure.first_row[ToIndex(s)] + ToIndex(block - own)];
   return ToIndex(kDim * row + i % kDim);
+}
+
+template <int kDim>
+double SparseCholesky<kDim>::LargestNoise() const {
+  const SymbolicFactor& structure = plan_.structure();
+  std::vector<double> noise(diagonal_.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = kNoise * diagonal_[i];
+  double largest = 0.0;
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const int size = plan_.front_size(s);
+    const double* column = panel(s);
+    for (int c = 0; c < plan_.pivots(s); ++c, column += PaddedRows(size)) {
+      const double share = noise[RowOfFront(s, c)] / (column[c] * column[c]);
+      largest = std::max(largest, share);
+      for (int i = c + 1; i < size; ++i) noise[RowOfFront(s, i)] += column[i] * column[i] * share;
+    }
+  }
+  return largest;
 }
 
 template <int kDim>

@@ -44,6 +44,11 @@ class SparseCholesky {
   /// the condition number of the matrix when its diagonal is scaled to 1.
   double smallest_pivot() const { return smallest_pivot_; }
 
+  /// A bound of how wrong a pivot may be, as a share of it, if the matrix's entries are right to a
+  /// few units in the last place of double: the first-order effect of errors of the diagonal, all
+  /// taken to add up. On long chains it is far too large. Takes as long as Solve.
+  double LargestNoise() const;
+
   /// The factor's columns of a supernode, over the rows of its front; the leading dimension is
   /// PaddedRows of the front's size. Above the diagonal nothing is defined.
   const double* panel(int s) const { return values_.data() + plan_.panel_start(s); }

@@ -14,6 +14,7 @@ namespace {
 
 OptimizerOptions WhileGrowing(const ClosureGraphOptions& options) {
   OptimizerOptions optimizer;
+  optimizer.careful_covariances = false;  // matches differ little in information
   optimizer.loss = options.loss;
   optimizer.max_iterations = options.max_iterations;
   optimizer.relative_decrease = options.relative_decrease;
@@ -23,6 +24,7 @@ OptimizerOptions WhileGrowing(const ClosureGraphOptions& options) {
 
 OptimizerOptions AtTheEnd(const ClosureGraphOptions& options) {
   OptimizerOptions optimizer;
+  optimizer.careful_covariances = false;
   optimizer.loss = options.loss;
   optimizer.max_iterations = options.last_max_iterations;
   optimizer.relative_decrease = options.last_relative_decrease;

@@ -281,7 +281,7 @@ TYPED_TEST(MarginalsTest, RelativeToANodeAreThoseWithItHeldWhereDigitsWouldBeLos
     const auto& block = expected->landmark_covariances()[i];
     // The nearest is 95 steps away: differences may keep enough digits, and are taken then. They
     // and what they are compared with are as exact as the condition of the Hessian lets them be.
-    ASSERT_LE((landmarks[i] - block).norm(), 1e-4 * block.norm()) << "landmark " << i;
+    ASSERT_LE((landmarks[i] - block).norm(), 1e-3 * block.norm()) << "landmark " << i;
   }
 }
 

@@ -190,9 +190,7 @@ TYPED_TEST(MixedInformationTest, CovariancesOfAChainAreTheSumsOfItsLinks) {
       expected = A * expected * A.transpose() + link;
       const Covariance scale = expected.diagonal().cwiseSqrt().asDiagonal().inverse();
       const Covariance difference = marginals->covariances()[i] - expected;
-      // Double precision is what covariances are computed in: with fourteen orders of magnitude
-      // between weights it is good for an order of magnitude, not for digits.
-      EXPECT_LE((scale * difference * scale).cwiseAbs().maxCoeff(), 0.3)
+      EXPECT_LE((scale * difference * scale).cwiseAbs().maxCoeff(), 1e-2)
           << "seed " << seed << ", node " << i;
     }
   }
