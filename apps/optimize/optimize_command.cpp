@@ -200,8 +200,9 @@ void Optimization<Pose>::ComputeMarginals() {
     Refuse("there are no covariances: some node or landmark may move without changing F");
   }
   if (reference_ >= 0) {
-    covariances_ = marginals->RelativeTo(reference_);
-    landmark_covariances_ = marginals->LandmarksRelativeTo(reference_);
+    auto relative = marginals->RelativeTo(reference_);
+    covariances_ = std::move(relative.nodes);
+    landmark_covariances_ = std::move(relative.landmarks);
     return;
   }
   covariances_ = marginals->covariances();

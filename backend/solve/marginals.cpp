@@ -44,36 +44,6 @@ void SetInfiniteOutside(const std::vector<int>& components, int component,
   }
 }
 
-template <typename Pose>
-struct NodesAndLandmarks {
-  std::vector<typename Marginals<Pose>::Covariance> nodes;
-  std::vector<typename Marginals<Pose>::PointCovariance> landmarks;
-};
-
-/// The covariances with `node` held instead of the node that is held in its component. Nothing if
-/// several nodes of the component are fixed, or if the Hessian is not positive definite.
-template <typename Pose>
-std::optional<NodesAndLandmarks<Pose>> CovariancesWithHeld(PoseGraph<Pose> graph,
-                                                           const std::vector<int>& components,
-                                                           int node, const RobustLoss& loss) {
-  const auto is_near = [&](int other) {
-    return components[ToIndex(other)] == components[ToIndex(node)];
-  };
-  if (std::erase_if(graph.fixed, is_near) > 1) return std::nullopt;
-  graph.fixed.push_back(node);
-  NormalEquations<Pose> equations;
-  equations.SetStructure(graph);
-  const Objective objective{loss, Parametrization::kManifold};
-  equations.Linearize(graph, objective);
-  SparseCholesky<Pose::kDof> factor;
-  factor.Analyze(equations.hessian());
-  if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
-    return std::nullopt;
-  }
-  const Marginals<Pose> marginals(graph, equations, factor, loss);
-  return NodesAndLandmarks<Pose>{marginals.covariances(), marginals.landmark_covariances()};
-}
-
 }  // namespace
 
 template <typename Pose>
@@ -144,80 +114,96 @@ std::vector<typename Marginals<Pose>::Covariance> Marginals<Pose>::PairCovarianc
 }
 
 template <typename Pose>
-std::vector<typename Marginals<Pose>::Covariance> Marginals<Pose>::Differences(
-    int node, bool* are_exact) const {
-  const std::vector<Covariance> cross = CrossCovariances(node);
-  const std::vector<int>& components = equations_->components().of_node;
-  const Covariance& own = covariances_[ToIndex(node)];
-  std::vector<Covariance> relative(graph_.poses.size(), Covariance::Zero());
-  for (int i = 0; i < static_cast<int>(graph_.poses.size()); ++i) {
-    if (i == node || components[ToIndex(i)] != components[ToIndex(node)]) continue;
-    // A motion d of `node` moves node i, seen from there, by -A d.
-    const Covariance A =
-        (graph_.poses[ToIndex(i)].Inverse() * graph_.poses[ToIndex(node)]).Adjoint();
-    const Covariance mixed = cross[ToIndex(i)] * A.transpose();
-    const Covariance moved = A * own * A.transpose();
-    const Covariance& of_node = covariances_[ToIndex(i)];
-    const Covariance sum = of_node - mixed - mixed.transpose() + moved;
-    *are_exact &= IsAccurate<Pose::kDof>(sum.diagonal(), (of_node + moved).diagonal());
-    relative[ToIndex(i)] = 0.5 * (sum + sum.transpose());
-  }
-  return relative;
+typename Marginals<Pose>::Covariance Marginals<Pose>::NodeDifference(int i, int node,
+                                                                     const Covariance& cross,
+                                                                     bool* is_exact) const {
+  // A motion d of `node` moves node i, seen from there, by -A d.
+  const Covariance A = (graph_.poses[ToIndex(i)].Inverse() * graph_.poses[ToIndex(node)]).Adjoint();
+  const Covariance mixed = cross * A.transpose();
+  const Covariance moved = A * covariances_[ToIndex(node)] * A.transpose();
+  const Covariance& of_node = covariances_[ToIndex(i)];
+  const Covariance sum = of_node - mixed - mixed.transpose() + moved;
+  *is_exact = IsAccurate<kDof>(sum.diagonal(), (of_node + moved).diagonal());
+  return 0.5 * (sum + sum.transpose());
 }
 
 template <typename Pose>
-std::vector<typename Marginals<Pose>::PointCovariance> Marginals<Pose>::LandmarkDifferences(
-    int node, bool* are_exact) const {
-  const Components& components = equations_->components();
+typename Marginals<Pose>::PointCovariance Marginals<Pose>::LandmarkDifference(
+    int i, int node, const Eigen::Matrix<double, kPoint, kDof>& cross, bool* is_exact) const {
   const Pose& pose = graph_.poses[ToIndex(node)];
-  const Eigen::MatrixXd columns = ColumnsOf(node);
-  std::vector<PointCovariance> relative = landmark_covariances_;
-  if (columns.size() == 0) return relative;
-  for (int i = 0; i < static_cast<int>(relative.size()); ++i) {
-    if (components.of_landmark[ToIndex(i)] != components.of_node[ToIndex(node)]) continue;
-    // A motion d of `node` moves the landmark, seen from there, by R J d in the map's axes.
-    const auto J = Linearize(pose, graph_.landmarks[ToIndex(i)], Pose::Point::Zero().eval()).J_node;
-    const Eigen::Matrix<double, kPoint, kDof> A = pose.rotation() * J;
-    const int row = kDof * equations_->landmark_variable(i);
-    const PointCovariance mixed = columns.template middleRows<kPoint>(row) * A.transpose();
-    const PointCovariance moved = A * covariances_[ToIndex(node)] * A.transpose();
-    PointCovariance& sum = relative[ToIndex(i)];
-    const PointCovariance terms = sum + moved;
-    sum += mixed + mixed.transpose() + moved;
-    *are_exact &= IsAccurate<kPoint>(sum.diagonal(), terms.diagonal());
-  }
-  return relative;
+  // A motion d of `node` moves the landmark, seen from there, by R J d in the map's axes.
+  const auto J = Linearize(pose, graph_.landmarks[ToIndex(i)], Pose::Point::Zero().eval()).J_node;
+  const Eigen::Matrix<double, kPoint, kDof> A = pose.rotation() * J;
+  const PointCovariance mixed = cross * A.transpose();
+  const PointCovariance moved = A * covariances_[ToIndex(node)] * A.transpose();
+  const PointCovariance& of_landmark = landmark_covariances_[ToIndex(i)];
+  const PointCovariance sum = of_landmark + mixed + mixed.transpose() + moved;
+  *is_exact = IsAccurate<kPoint>(sum.diagonal(), (of_landmark + moved).diagonal());
+  return 0.5 * (sum + sum.transpose());
 }
 
 template <typename Pose>
-std::vector<typename Marginals<Pose>::Covariance> Marginals<Pose>::RelativeTo(int node) const {
-  RequireNode(node);
-  const std::vector<int>& components = equations_->components().of_node;
-  const int component = components[ToIndex(node)];
-  bool are_exact = true;
-  std::vector<Covariance> relative = Differences(node, &are_exact);
-  if (!are_exact) {
-    if (auto held = CovariancesWithHeld(graph_, components, node, loss_)) {
-      relative = std::move(held->nodes);
-    }
-  }
-  SetInfiniteOutside(components, component, &relative);
-  return relative;
-}
-
-template <typename Pose>
-std::vector<typename Marginals<Pose>::PointCovariance> Marginals<Pose>::LandmarksRelativeTo(
-    int node) const {
-  RequireNode(node);
+typename Marginals<Pose>::Relative Marginals<Pose>::Differences(int node, bool* are_exact) const {
   const Components& components = equations_->components();
-  bool are_exact = true;
-  std::vector<PointCovariance> relative = LandmarkDifferences(node, &are_exact);
-  if (!are_exact) {
-    if (auto held = CovariancesWithHeld(graph_, components.of_node, node, loss_)) {
-      relative = std::move(held->landmarks);
-    }
+  const int component = components.of_node[ToIndex(node)];
+  Relative relative{covariances_, landmark_covariances_};
+  const Eigen::MatrixXd columns = ColumnsOf(node);
+  if (columns.size() == 0) return relative;  // it is held
+  for (int i = 0; i < static_cast<int>(relative.nodes.size()); ++i) {
+    if (i == node || components.of_node[ToIndex(i)] != component) continue;
+    const int variable = equations_->variable(i);
+    const Covariance cross = variable < 0 ? Covariance(Covariance::Zero())
+                                          : Covariance(columns.middleRows<kDof>(kDof * variable));
+    bool is_exact = true;
+    relative.nodes[ToIndex(i)] = NodeDifference(i, node, cross, &is_exact);
+    *are_exact &= is_exact;
   }
-  SetInfiniteOutside(components.of_landmark, components.of_node[ToIndex(node)], &relative);
+  relative.nodes[ToIndex(node)].setZero();
+  for (int i = 0; i < static_cast<int>(relative.landmarks.size()); ++i) {
+    if (components.of_landmark[ToIndex(i)] != component) continue;
+    const int row = kDof * equations_->landmark_variable(i);
+    bool is_exact = true;
+    relative.landmarks[ToIndex(i)] =
+        LandmarkDifference(i, node, columns.template middleRows<kPoint>(row), &is_exact);
+    *are_exact &= is_exact;
+  }
+  return relative;
+}
+
+template <typename Pose>
+std::optional<typename Marginals<Pose>::Relative> Marginals<Pose>::WithHeld(int node) const {
+  PoseGraph<Pose> graph = graph_;
+  const std::vector<int>& components = equations_->components().of_node;
+  const auto is_near = [&](int other) {
+    return components[ToIndex(other)] == components[ToIndex(node)];
+  };
+  if (std::erase_if(graph.fixed, is_near) > 1) return std::nullopt;
+  graph.fixed.push_back(node);
+  NormalEquations<Pose> equations;
+  equations.SetStructure(graph);
+  const Objective objective{loss_, Parametrization::kManifold};
+  equations.Linearize(graph, objective);
+  SparseCholesky<kDof> factor;
+  factor.Analyze(equations.hessian());
+  if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
+    return std::nullopt;
+  }
+  const Marginals held(graph, equations, factor, loss_);
+  return Relative{held.covariances_, held.landmark_covariances_};
+}
+
+template <typename Pose>
+typename Marginals<Pose>::Relative Marginals<Pose>::RelativeTo(int node) const {
+  RequireNode(node);
+  bool are_exact = true;
+  Relative relative = Differences(node, &are_exact);
+  if (!are_exact) {
+    if (auto held = WithHeld(node)) relative = std::move(*held);
+  }
+  const Components& components = equations_->components();
+  const int component = components.of_node[ToIndex(node)];
+  SetInfiniteOutside(components.of_node, component, &relative.nodes);
+  SetInfiniteOutside(components.of_landmark, component, &relative.landmarks);
   return relative;
 }
 
@@ -235,7 +221,7 @@ std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovaria
   if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
     return std::nullopt;
   }
-  return Marginals<Pose>(graph, equations, factor, loss).RelativeTo(node);
+  return Marginals<Pose>(graph, equations, factor, loss).RelativeTo(node).nodes;
 }
 
 template <typename Pose>

@@ -43,23 +43,25 @@ class Marginals {
   /// one solve for each different second node. A pair may come several times.
   std::vector<Covariance> PairCovariances(std::span<const std::pair<int, int>> pairs) const;
 
-  /// Of every node relative to `node`: the diagonal blocks of the inverse of H without the rows and
-  /// columns of `node` (H_red in Section IV-F of the tutorial); zero for `node` itself. Infinite
-  /// on the diagonal for nodes of other components.
+  struct Relative {
+    std::vector<Covariance>
+        nodes;  ///< each in its own frame; zero for the node they are relative to
+    std::vector<PointCovariance> landmarks;  ///< each in the map frame
+  };
+
+  /// Of every node and landmark relative to `node`: the diagonal blocks of the inverse of H without
+  /// the rows and columns of `node` (H_red in Section IV-F of the tutorial). Infinite on the
+  /// diagonal for nodes and landmarks of other components.
   ///
   /// They come from the joint covariance with the held node, by one solve. This is no
   /// approximation: the errors do not change when all nodes move together, so H has these motions
   /// in its null space, and changing the node that is held is linear. But far from the held node
-  /// the difference of two large covariances may be small. Where it would lose more than half of
-  /// the digits, the graph is linearised and factorised again with `node` held.
+  /// the difference of two large covariances may be small. Where any of them would lose too many
+  /// digits, the graph is linearised and factorised again with `node` held, for all of them.
   ///
   /// With several fixed nodes in the component of `node` all of them stay where they are, and
   /// there is no second factorisation.
-  std::vector<Covariance> RelativeTo(int node) const;
-
-  /// Of every landmark relative to `node`, in the map frame, computed likewise. Infinite on the
-  /// diagonal where no node of the same component has seen it.
-  std::vector<PointCovariance> LandmarksRelativeTo(int node) const;
+  Relative RelativeTo(int node) const;
 
  private:
   /// The columns of the inverse that belong to a node; empty if it is held.
@@ -67,8 +69,14 @@ class Marginals {
   void RequireNode(int node) const;
   /// Relative to `node`, as differences of covariances with the held node; nothing is said about
   /// other components. `are_exact` becomes false where too many digits are lost.
-  std::vector<Covariance> Differences(int node, bool* are_exact) const;
-  std::vector<PointCovariance> LandmarkDifferences(int node, bool* are_exact) const;
+  Relative Differences(int node, bool* are_exact) const;
+  Covariance NodeDifference(int i, int node, const Covariance& cross, bool* is_exact) const;
+  PointCovariance LandmarkDifference(int i, int node,
+                                     const Eigen::Matrix<double, kPoint, kDof>& cross,
+                                     bool* is_exact) const;
+  /// The same with `node` held instead of the node that is held in its component. Nothing if
+  /// several nodes of the component are fixed, or if the Hessian is not positive definite.
+  std::optional<Relative> WithHeld(int node) const;
 
   PoseGraph<Pose> graph_;
   RobustLoss loss_;
@@ -78,8 +86,8 @@ class Marginals {
   std::vector<PointCovariance> landmark_covariances_;
 };
 
-/// Marginals::RelativeTo for a graph of which nothing else is wanted. Nothing if the Hessian is not
-/// positive definite; throws Error (kInput) if the graph is not valid or has no such
+/// Marginals::RelativeTo, of the nodes, for a graph of which nothing else is wanted. Nothing if the
+/// Hessian is not positive definite; throws Error (kInput) if the graph is not valid or has no such
 /// node.
 template <typename Pose>
 std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovariances(

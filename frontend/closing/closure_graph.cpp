@@ -126,7 +126,7 @@ bool ClosureGraph::TryClosures(std::span<const ClosureConstraint> closures,
 
 void ClosureGraph::UpdateCovariances(Optimizer<SE2>* optimizer, int relative_to) {
   if (const std::optional<Marginals<SE2>> marginals = optimizer->ComputeMarginals(graph_)) {
-    covariances_ = marginals->RelativeTo(relative_to);
+    covariances_ = marginals->RelativeTo(relative_to).nodes;
     map_covariances_ = marginals->covariances();
   }
 }
