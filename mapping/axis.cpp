@@ -53,7 +53,7 @@ std::vector<AxisTick> Axis::LinearTicks(int count) const {
   const double first = std::ceil(begin_ / step - kSlack);
   const double last = std::floor(end_ / step + kSlack);
   for (double k = first; k <= last; ++k) {
-    // -0 would be labelled so, and 3 * 0.1 with all its digits.
+    // Adding 0.0 turns -0 into 0. Six digits hide the rounding error of 3 * 0.1.
     ticks.push_back({k * step + 0.0, fmt::format("{:.6g}", k * step + 0.0), ""});
   }
   return ticks;

@@ -10,8 +10,8 @@ double RoundDown(double value);
 
 struct AxisTick {
   double value = 0.0;
-  std::string label;     ///< empty for those between
-  std::string exponent;  ///< to be raised behind the label: 10^3
+  std::string label;     ///< empty for the smaller ticks
+  std::string exponent;  ///< written raised behind the label, as in 10^3
 };
 
 /// An axis of a plot: which values it shows, and where on a scale from 0 to 1.

@@ -90,7 +90,8 @@ void Canvas::DrawFineLine(const PixelArea& area, const Eigen::Vector2d& from,
   Eigen::Vector2d a = (from - corner).cwiseMax(-kFarthest).cwiseMin(kFarthest);
   Eigen::Vector2d b = (to - corner).cwiseMax(-kFarthest).cwiseMin(kFarthest);
   if (!Clip(area.width, area.height, &a, &b)) return;
-  // Along the longer axis a pixel a step; across it, two pixels share the colour (Wu 1991).
+  // Each step goes one pixel along the longer axis. Two pixels across it share the colour (Wu
+  // 1991).
   const int along = std::abs(b.x() - a.x()) >= std::abs(b.y() - a.y()) ? 0 : 1;
   const int across = 1 - along;
   if (a[along] > b[along]) std::swap(a, b);

@@ -30,13 +30,13 @@ class Canvas {
   Color At(int x, int y) const;
   void SetPixel(int x, int y, Color color);
 
-  /// An anti-aliased line, cut at the borders of `area`. Points may be any distance outside; a line
-  /// with a coordinate that is not finite is not drawn.
+  /// Draws an anti-aliased line, cut at the borders of `area`. Its ends may be any distance
+  /// outside. A line with a coordinate that is not finite is left out.
   void DrawLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                 Color color, int thickness);
 
-  /// The same for a line one pixel wide that lets what is below it shine through: `opacity` is the
-  /// share of its colour, 0..1. Lines of opacity 1/2 look half a pixel wide.
+  /// Draws a line one pixel wide and mixes its colour with the colour of the picture: `opacity` is
+  /// the share of the line's colour, 0..1. Lines of opacity 1/2 look half a pixel wide.
   void DrawFineLine(const PixelArea& area, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                     Color color, double opacity);
 

@@ -15,7 +15,7 @@ struct Color {
 inline constexpr Color kBlack{0, 0, 0};
 inline constexpr Color kWhite{255, 255, 255};
 
-/// The colour on the way from `a` (share 0) to `b` (share 1).
+/// Mixes two colours: `share` 0 gives `a`, 1 gives `b`.
 Color Mix(Color a, Color b, double share);
 
 }  // namespace loopgrid

@@ -51,7 +51,7 @@ Style StyleOf(std::size_t curve) {
 
 bool IsFinite(const Eigen::Vector2d& point) { return point.allFinite(); }
 
-/// A line through points in pieces, the dashes going on from one segment to the next.
+/// Draws a line through points. The dashes continue from one segment to the next.
 void DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Style& style, Canvas* canvas) {
   constexpr int kThickness = 3;
   const PixelArea everywhere{0, 0, canvas->width(), canvas->height()};

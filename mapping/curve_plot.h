@@ -14,9 +14,9 @@ struct Curve {
 
 /// A PNG of curves over a common x axis, 1,600 pixels wide: axes with ticks, a legend above them.
 /// The y axis is logarithmic if the positive values span more than a factor of 20; values that are
-/// not positive are then drawn at its lower end. Colours differ in brightness, too, and so do
-/// dashes and markers, for prints in grey. Points that are not finite are left out; a plot without
-/// any is an empty frame.
+/// not positive are then drawn at its lower end. The curves differ in brightness, dashes and
+/// markers, so that they can be told apart in grey prints. Points that are not finite are left out.
+/// A plot without points is an empty frame.
 std::string DrawCurves(std::span<const Curve> curves, const std::string& x_label,
                        const std::string& y_label);
 

@@ -1,5 +1,5 @@
-// This file defines nothing else: the linker takes it only where the program defines no
-// DrawingPen() of its own.
+// This file must define nothing else. The linker takes a file from a library only if it needs a
+// symbol of it. So a program that defines its own DrawingPen() does not link this one.
 #include "mapping/pen.h"
 
 namespace loopgrid {

@@ -48,7 +48,7 @@ CellBox BoxAround(std::span<const PlacedScan> scans) {
   return box;
 }
 
-/// Decides about the size of the cells, and which scans are too far away.
+/// Decides how large the cells are and which scans are left out.
 class MapFitting {
  public:
   MapFitting(const OccupancyGridOptions& options, const MapLimits& limits)
@@ -87,7 +87,7 @@ class MapFitting {
     return std::max(width, height) <= limits_.max_side && width * height <= options_.max_cells;
   }
 
-  /// The factor that leads to the coarsest cells.
+  /// The factor that makes cells as large as they may be.
   std::int64_t Coarsest() const {
     return std::max<std::int64_t>(1, std::llround(limits_.coarsest / options_.resolution));
   }
@@ -99,7 +99,8 @@ class MapFitting {
     return 0.5 * side * static_cast<double>(factor) * options_.resolution;
   }
 
-  /// The centre is the median of x, and the median of y among the scans that are near that.
+  /// The x of the centre is the median of all x. Its y is the median of y over the scans near that
+  /// x.
   void MeasureFromCentre(std::vector<PlacedScan>* scans) const {
     const auto median = [](std::vector<double> values) {
       const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -129,8 +130,8 @@ class MapFitting {
   const MapLimits& limits_;
 };
 
-/// The same map with larger cells. A large cell with a wall in it is mostly free, but it is the
-/// wall that should be seen.
+/// The same options for larger cells. Most of a large cell with a wall in it is free, but the
+/// picture should show the wall.
 OccupancyGridOptions Coarser(OccupancyGridOptions options, double factor) {
   options.resolution *= factor;
   options.hit_log_odds = std::min(10.0, factor * options.hit_log_odds);
@@ -154,7 +155,7 @@ FittedMap RenderFittedMap(std::span<const SE2> poses, const ScanAt& scan_at,
     needed = needed.United(map.grid.BoxOf(poses[scan.index], scan_at(scan.index)));
   }
   map.grid.Reserve(needed);
-  std::size_t next = 0;  // the first scan about which nothing is known yet
+  std::size_t next = 0;  // the next scan to decide about
   for (const PlacedScan& scan : scans) {
     for (; next < scan.index; ++next) map.left_out.push_back(next);
     map.grid.AddScan(poses[scan.index], scan_at(scan.index));

@@ -25,7 +25,7 @@ constexpr Color kLandmarkColor{20, 140, 60};
 constexpr double kLandmarkRadius = 4.0;  // pixels
 constexpr double kBorder = 0.008;        // free space around the graph, share of its larger side
 
-// Where the eye of an oblique view is: degrees from x to y, and above the horizon.
+// Direction from which an oblique view looks: degrees from x to y, and degrees above the horizon.
 constexpr double kAzimuth = -55.0;
 constexpr double kElevation = 28.0;
 constexpr double kPalest = 0.75;  // share of white in the colour of what is farthest away
@@ -54,7 +54,7 @@ Projection ProjectionOf(Viewpoint viewpoint) {
 /// A state of a graph as it appears in the plane of the picture.
 struct Panel {
   std::vector<Eigen::Vector2d> nodes;
-  std::vector<double> depths;  // of the nodes: the share of them that is nearer
+  std::vector<double> depths;  // for each node, the share of all nodes that is nearer
   std::vector<Eigen::Vector2d> landmarks;
   Eigen::AlignedBox2d extent;
 };
@@ -77,7 +77,8 @@ Panel Project(const GraphState& state, Viewpoint viewpoint) {
         Eigen::Vector2d::Constant(kBorder * panel.extent.sizes().maxCoeff());
     panel.extent = {panel.extent.min() - border, panel.extent.max() + border};
   }
-  // Shares make the most of the shades wherever most nodes are, and agree if all are equally far.
+  // Shares use the whole range of shades, however the depths are distributed. Nodes that are
+  // equally far get equal shares.
   std::vector<double> sorted = panel.depths;
   std::sort(sorted.begin(), sorted.end());
   for (double& depth : panel.depths) {
@@ -91,7 +92,8 @@ double DepthOf(const GraphEdge& edge, const Panel& panel) {
   return 0.5 * (panel.depths[ToIndex(edge.from)] + panel.depths[ToIndex(edge.to)]);
 }
 
-/// The order to draw edges in: far ones first; of equally far ones, the robot's way last.
+/// The order in which edges are drawn: far ones first. Of equally far ones the robot's path is
+/// last.
 std::vector<int> BackToFront(std::span<const GraphEdge> edges, const Panel& panel) {
   std::vector<int> order(edges.size());
   std::iota(order.begin(), order.end(), 0);
@@ -105,13 +107,14 @@ std::vector<int> BackToFront(std::span<const GraphEdge> edges, const Panel& pane
   return order;
 }
 
-/// How heavy lines may be without running into each other.
+/// Width and opacity of lines.
 struct Pen {
   bool is_broad;   // two pixels
-  double opacity;  // of fine ones
+  double opacity;  // of lines one pixel wide
 };
 
-/// `ink` is the share of the picture that lines one pixel wide would cover if none met another.
+/// Chooses thinner lines for graphs with many edges. `ink` is the share of the picture that lines
+/// one pixel wide would cover if no two of them met.
 Pen PenFor(double ink) {
   constexpr double kBroadest = 0.03;
   constexpr double kDensest = 0.35;

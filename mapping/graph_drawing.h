@@ -10,7 +10,7 @@
 namespace loopgrid {
 
 enum class EdgeKind {
-  kSequential,  ///< between consecutive nodes, or nearly so: the robot's way
+  kSequential,  ///< between consecutive nodes, or nearly so: the robot's path
   kClosure,     ///< between nodes that met again later
 };
 
@@ -26,12 +26,12 @@ struct GraphState {
   std::string title = {};
   std::vector<Eigen::Vector3d> nodes = {};
   std::vector<Eigen::Vector3d> landmarks = {};
-  const OccupancyGrid* backdrop = nullptr;  ///< the map that goes with it; only seen from above
+  const OccupancyGrid* backdrop = nullptr;  ///< the map at these poses; only for kAbove
 };
 
 enum class Viewpoint {
   kAbove,    ///< x to the right, y upwards
-  kOblique,  ///< z upwards, x and y aslant; what is farther away is paler
+  kOblique,  ///< z upwards, x and y at an angle; what is farther away is paler
 };
 
 /// graph.png: the constraints before and after optimisation side by side, each over its map, in the

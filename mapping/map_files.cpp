@@ -25,7 +25,7 @@ std::uint8_t GreyOf(CellState state) {
   return kGreyUnknown;
 }
 
-// What an image shows: one unknown cell at the origin if there is nothing to show.
+// The cells that an image shows: if nothing was seen, the cell at the origin.
 CellBox PicturedBox(const CellBox& seen) { return seen.empty() ? CellBox{0, 0, 1, 1} : seen; }
 
 }  // namespace

@@ -9,13 +9,14 @@
 
 namespace loopgrid {
 
-/// Grey values of maps. By map_server's trinary rule, p = (255 - value) / 255 against the
-/// thresholds of MapYaml, they say wall (p > 0.65), free (p < 0.196) and unknown (between).
+/// Grey values of maps. ROS's map_server computes p = (255 - value) / 255 and compares it with the
+/// thresholds of MapYaml: wall if p > 0.65, free if p < 0.196, else unknown.
 inline constexpr std::uint8_t kGreyWall = 0;
 inline constexpr std::uint8_t kGreyUnknown = 205;
 inline constexpr std::uint8_t kGreyFree = 254;
 
-/// No map image has more pixels a side: image files of every program take that many.
+/// A map image has at most this many pixels a side, because common programs cannot open larger
+/// ones.
 inline constexpr std::int64_t kMaxMapSide = 32767;
 
 /// A grey picture: row-major, the first row is the top.

@@ -18,8 +18,8 @@ struct CellRange {
   std::int64_t end;
 };
 
-// The cells that begin within [start, start + step), so that each belongs to one pixel; where cells
-// are larger than pixels, the cell that the pixel begins in. Cut to [lowest, highest).
+// The cells that begin within [start, start + step): so each cell belongs to one pixel. If cells
+// are larger than pixels, it is the cell in which the pixel begins. Cut to [lowest, highest).
 CellRange CellsUnderPixel(double start, double step, std::int64_t lowest, std::int64_t highest) {
   const auto cut = [&](double cell) {
     return static_cast<std::int64_t>(
@@ -93,7 +93,7 @@ void MapView::DrawFineLine(const Eigen::Vector2d& from, const Eigen::Vector2d& t
 }
 
 void MapView::DrawDot(const Eigen::Vector2d& centre, double radius_pixels, Color color) {
-  // A short thick line with round ends is a disc that is cut at the area's border like any line.
+  // A thick line of length zero with round ends is a disc. Like any line it is cut at the border.
   canvas_->DrawLine(area_, ToPixel(centre), ToPixel(centre), color,
                     std::max(1, static_cast<int>(std::lround(2.0 * radius_pixels))));
 }
@@ -106,7 +106,7 @@ bool MapView::DrawEllipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& co
   // Rounding may leave a singular covariance with an eigenvalue a little below zero.
   if (variances.x() < -1e-9 * std::abs(variances.y())) return false;
   const Eigen::Vector2d axes = sigmas * variances.cwiseMax(0.0).cwiseSqrt();
-  // A chord of about three pixels, but not more corners than anybody could see.
+  // A corner about every three pixels, up to a number beyond which no difference is visible.
   const double perimeter = 2.0 * std::numbers::pi * axes.maxCoeff() * scale_;
   const int corners = std::clamp(static_cast<int>(std::min(perimeter, 1e4) / 3.0), 16, 720);
   const auto corner = [&](int k) -> Eigen::Vector2d {

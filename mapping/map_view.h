@@ -11,11 +11,11 @@ namespace loopgrid {
 /// The part of the map frame that a grid has seen, metres; empty if nothing.
 Eigen::AlignedBox2d SeenExtent(const OccupancyGrid& grid);
 
-/// A part of a canvas that shows a part of the map frame, y upwards, as large as fits and centred.
-/// Nothing is drawn outside of it. Coordinates and covariances are those of the map frame.
+/// An area of a canvas that shows a part of the map frame, y upwards, centred and as large as fits.
+/// Nothing is drawn outside the area. Coordinates and covariances are those of the map frame.
 class MapView {
  public:
-  /// An extent that is empty or a point is widened to a square metre.
+  /// An extent that is empty or a single point is widened to a square metre.
   MapView(Canvas* canvas, const PixelArea& area, const Eigen::AlignedBox2d& extent);
 
   double pixels_per_metre() const { return scale_; }

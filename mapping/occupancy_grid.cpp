@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEvidencePerLogOdds = 100.0;
 
-// Cells beyond this index have no place: widths and areas of boxes stay far from overflow.
+// Cells beyond this index do not exist, so that widths and areas of boxes cannot overflow.
 constexpr std::int64_t kMaxCellIndex = std::int64_t{1} << 30;
 
 void RequireBetween(const char* field, double value, double low, double high) {
@@ -28,7 +28,7 @@ int ToEvidence(double log_odds) {
 
 CellBox BoxOfCell(GridPoint p) { return {p.cell_x(), p.cell_y(), p.cell_x() + 1, p.cell_y() + 1}; }
 
-// Room to spare, so that a map that grows scan by scan is seldom copied.
+// Adds a margin, so that a map that grows scan by scan is seldom copied.
 CellBox WithMargin(const CellBox& old_box, const CellBox& needed) {
   const std::int64_t margin = 64 + std::max(needed.width(), needed.height()) / 4;
   CellBox box = needed;
@@ -137,7 +137,8 @@ std::size_t OccupancyGrid::IndexOf(std::int64_t cell_x, std::int64_t cell_y) con
   return static_cast<std::size_t>((cell_y - box_.min_y) * box_.width() + cell_x - box_.min_x);
 }
 
-// Scan numbers fit 16 bits; when they are used up the cells forget them and counting starts over.
+// Scan numbers have 16 bits. When they are used up, all cells are reset to "no scan" and counting
+// begins again.
 std::uint16_t OccupancyGrid::NextScanNumber() {
   if (scan_number_ == std::numeric_limits<std::uint16_t>::max()) {
     for (Cell& cell : cells_) cell.last_scan = 0;
@@ -167,13 +168,15 @@ void OccupancyGrid::MarkHits(std::uint16_t scan_number) {
   }
 }
 
-// The hot loop of map drawing: what it needs is in locals, so that it stays in registers.
+// This loop takes most of the time of map drawing. It uses local variables, which stay in
+// registers.
 void OccupancyGrid::ClearRays(std::uint16_t scan_number) {
   const std::int64_t origin = box_.min_y * box_.width() + box_.min_x;
   const auto clear = [cells = cells_.data(), origin, scan_number, width = box_.width(),
                       miss = miss_, lowest = -limit_](std::int64_t x, std::int64_t y) {
     Cell& cell = cells[y * width + x - origin];
-    const int change = miss * (cell.last_scan != scan_number);  // no branch: mostly mispredicted
+    const int change =
+        miss * (cell.last_scan != scan_number);  // a branch would often be mispredicted
     cell.evidence = static_cast<std::int16_t>(std::max(cell.evidence + change, lowest));
     cell.last_scan = scan_number;
   };

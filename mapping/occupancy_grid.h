@@ -17,7 +17,7 @@ struct OccupancyGridOptions {
   double resolution = 0.05;              ///< side of a cell, metres
   double hit_log_odds = 0.85;            ///< added where a beam of a scan ends: p = 0.7
   double miss_log_odds = -0.4;           ///< added where beams only pass: p = 0.4
-  double max_log_odds = 100.0;           ///< evidence saturates here, either way
+  double max_log_odds = 100.0;           ///< evidence stops growing here, in both directions
   double no_return_range = 3.0;          ///< a beam without a return clears up to here, metres
   std::int64_t max_cells = 200'000'000;  ///< 4 bytes each; a larger map is refused
 
@@ -29,7 +29,7 @@ struct OccupancyGridOptions {
 struct MapScan {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< where the beams start: the laser
   std::span<const Eigen::Vector2f> hits;             ///< where beams ended
-  std::span<const Eigen::Vector2f> no_returns;       ///< directions (unit) of beams that did not
+  std::span<const Eigen::Vector2f> no_returns;       ///< unit vectors along beams without a return
 };
 
 /// A rectangle of cells: first inclusive, last exclusive.
@@ -49,11 +49,11 @@ struct CellBox {
 
 enum class CellState : std::uint8_t { kUnknown, kFree, kWall };
 
-/// A log-odds occupancy grid (Moravec and Elfes 1985) that grows with what it sees. Cell (i, j)
-/// covers [i, i + 1) x [j, j + 1) times the resolution, in the map frame, whatever the size of the
-/// grid. A scan counts once a cell: as a hit if any of its beams ends there, else as a miss if any
-/// crosses it. Evidence is kept in whole hundredths, so (short of saturation) the order of the
-/// scans does not matter.
+/// A log-odds occupancy grid (Moravec and Elfes 1985) that grows as scans are added. Cell (i, j)
+/// covers [i, i + 1) x [j, j + 1) times the resolution, in the map frame; it keeps its index when
+/// the grid grows. A scan counts once for each cell: as a hit if any of its beams ends there, else
+/// as a miss if any beam crosses it. Evidence is counted in whole hundredths, so the order of the
+/// scans does not matter, except where `max_log_odds` is reached.
 class OccupancyGrid {
  public:
   /// Throws Error (kUsage) if the options are not valid.
@@ -114,9 +114,9 @@ class OccupancyGrid {
   Beams beams_;              // of the scan being added; a member to save allocations
 };
 
-/// The map of `poses.size()` scans, scan i seen from poses[i] (T_map_scan). `scan_at(i)` is called
-/// twice for each i, in order: once to find the extent, once to draw, so nothing is held but the
-/// grid. Throws as OccupancyGrid does, naming the scan.
+/// The map of `poses.size()` scans; scan i was taken at poses[i] (T_map_scan). `scan_at(i)` is
+/// called twice for each i, in order: first to find the extent, then to draw. So only the grid is
+/// kept in memory. Throws as OccupancyGrid does; the message names the scan.
 OccupancyGrid RenderMap(std::span<const SE2> poses,
                         const std::function<MapScan(std::size_t)>& scan_at,
                         const OccupancyGridOptions& options = {});

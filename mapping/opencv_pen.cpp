@@ -35,8 +35,8 @@ class CvPen : public Pen {
  public:
   void DrawLine(const PixelBlock& block, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                 Color color, int thickness) const override {
-    // Cut to the block with a margin for the ends of thick lines. clipLine() does it in 64 bits,
-    // line() would not.
+    // Cut the line to the block, with a margin for the ends of thick lines. clipLine() computes
+    // with 64 bits; line() does not, so far ends could overflow.
     const std::int64_t margin = kSubpixels * (2 + thickness);
     const auto to_point = [margin](const Eigen::Vector2d& p) {
       // OpenCV's (0, 0) is the middle of the first pixel.

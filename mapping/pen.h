@@ -17,8 +17,8 @@ struct PixelBlock {
   std::size_t row_bytes = 0;  ///< from a pixel to the one below it
 };
 
-/// Draws lines and text into pixels. It is an interface so that a program can load the library that
-/// draws when there is something to draw, and not when it starts.
+/// Draws lines and text into pixels. It is an interface so that a program can load the drawing
+/// library when it draws for the first time, and not when it starts.
 class Pen {
  public:
   virtual ~Pen() = default;
@@ -39,9 +39,9 @@ class Pen {
 /// The pen that draws with OpenCV.
 const Pen& OpenCvPen();
 
-/// The pen that Canvas draws with. The library's definition, in drawing_pen.cpp, returns
-/// OpenCvPen(). A program that defines the function itself takes the place of that definition, and
-/// does not link OpenCV then.
+/// The pen that Canvas draws with. The library defines this function in drawing_pen.cpp; it returns
+/// OpenCvPen(). A program may define the function itself. Its definition is then used, and OpenCV
+/// is not linked.
 const Pen& DrawingPen();
 
 }  // namespace loopgrid

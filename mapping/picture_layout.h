@@ -25,8 +25,8 @@ inline constexpr Color kWallColor{130, 130, 130};
 /// How many pixels wide and high a picture of `extent` is when scaled to fit.
 Eigen::Vector2i FittedSize(const Eigen::AlignedBox2d& extent, int max_width, int max_height);
 
-/// A sample of a line, or of a dot, and what it stands for; (left, base) is the lower left corner.
-/// Return where the next entry goes.
+/// Draw a sample of a line, or a dot, and a text beside it that explains it; (left, base) is the
+/// lower left corner. Return the left end of the next entry.
 int DrawLegendLine(int left, int base, Color color, int thickness, const std::string& text,
                    Canvas* canvas);
 int DrawLegendDot(int left, int base, Color color, double radius, const std::string& text,

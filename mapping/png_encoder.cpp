@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kMaxSide = 1000000;  // libpng's own limit
 constexpr int kCompressionLevel = 6;
-// Z_DEFAULT_STRATEGY of zlib; with libpng's own choice pixels would give other bytes than before.
+// Z_DEFAULT_STRATEGY of zlib. libpng's own choice would give other bytes for the same pixels.
 constexpr int kCompressionStrategy = 0;
 
-// What libpng's functions are given to work on.
+// The input and the output of libpng's functions.
 struct Encoding {
   int width = 0;
   int height = 0;
@@ -33,7 +33,7 @@ struct Encoding {
   auto* encoding = static_cast<Encoding*>(png_get_error_ptr(png));
   try {
     encoding->problem = message;
-  } catch (const std::bad_alloc&) {  // an empty problem will do: Write() has returned false
+  } catch (const std::bad_alloc&) {  // the problem stays empty; Write() returns false all the same
   }
   png_longjmp(png, 1);
 }
@@ -53,7 +53,7 @@ void Append(png_structp png, png_bytep bytes, std::size_t count) {
 
 void Flush(png_structp) {}
 
-// Returns whether it has succeeded. libpng leaves this function by longjmp() when something fails,
+// Returns whether it has succeeded. When something fails, libpng leaves this function by longjmp(),
 // so no object in it may have a destructor.
 bool Write(png_structp png, png_infop info, Encoding* encoding) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;

@@ -20,9 +20,10 @@ struct GridPoint {
 };
 
 /// Calls `visit(cell_x, cell_y)` once for each cell that the segment from `from` to `to` crosses,
-/// in order, but not for the cell of `to`: that is where the beam ends. Exact: a cell is crossed
-/// if the segment has more than a corner of it. After Amanatides and Woo, "A fast voxel traversal
-/// algorithm for ray tracing", Eurographics 1987, in integers. Coordinates may differ by 2^50.
+/// in order, but not for the cell of `to`: that is where the beam ends. Exact: a cell that the
+/// segment touches only at a corner is not crossed. After Amanatides and Woo, "A fast voxel
+/// traversal algorithm for ray tracing", Eurographics 1987, in integers. Coordinates may differ by
+/// 2^50.
 template <typename Visit>
 void WalkRay(GridPoint from, GridPoint to, Visit&& visit) {
   std::int64_t x = from.cell_x();
@@ -38,8 +39,8 @@ void WalkRay(GridPoint from, GridPoint to, Visit&& visit) {
   const std::int64_t gap_x = sign_x > 0 ? kPitch - inside_x : inside_x;
   const std::int64_t gap_y = sign_y > 0 ? kPitch - inside_y : inside_y;
 
-  // `order` has the sign of gap_x / length_x - gap_y / length_y: which boundary comes first. Rays
-  // side by side take nearly the same turns, so these branches are predicted well.
+  // `order` has the sign of gap_x / length_x - gap_y / length_y and so says which boundary comes
+  // first. Neighbouring rays branch in nearly the same way, so these branches are predicted well.
   const std::int64_t length_x = std::abs(to.x - from.x);
   const std::int64_t length_y = std::abs(to.y - from.y);
   const std::int64_t advance_x = kPitch * length_y;

@@ -19,7 +19,8 @@ Eigen::Matrix2d PositionCovariance(const SE2& node, const Eigen::Matrix3d& covar
   return node.rotation() * covariance.topLeftCorner<2, 2>() * node.rotation().transpose();
 }
 
-// Of the nodes, the map, and the ellipses but for those that would dwarf both.
+// The extent of nodes, map and ellipses. Ellipses that are much larger than nodes and map are not
+// counted.
 Eigen::AlignedBox2d ExtentOf(std::span<const SE2> nodes,
                              std::span<const Eigen::Matrix3d> covariances,
                              const OccupancyGrid* backdrop) {

@@ -10,10 +10,10 @@
 namespace loopgrid {
 
 /// uncertainty.png: the 3 sigma ellipses of the nodes' positions relative to the robot's last pose,
-/// which is the last node (the tutorial's Fig. 10), over the map that goes with them. Covariances
-/// are in each node's own frame, order (x, y, theta); those that are none (not finite, indefinite)
-/// are left out. At most 2,400 pixels a side. Throws Error (kUsage) if a pose is not finite or
-/// there is not one covariance a node.
+/// which is the last node (the tutorial's Fig. 10), over the map. Covariances are in each node's
+/// own frame, order (x, y, theta). Those that are not finite or not positive semi-definite are left
+/// out. At most 2,400 pixels a side. Throws Error (kUsage) if a pose is not finite, or if the
+/// number of covariances is not that of the nodes.
 std::string DrawUncertainty(std::span<const SE2> nodes,
                             std::span<const Eigen::Matrix3d> covariances,
                             const OccupancyGrid* backdrop = nullptr);
