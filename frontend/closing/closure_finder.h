@@ -20,9 +20,9 @@ class ClosureFinder {
   explicit ClosureFinder(const ClosureFinderOptions& options = {}) : options_(options) {}
 
   /// Matches the newest node, whose scan was taken at `timestamp`, with the old places inside the
-  /// gate; while the session is not localized, with all places of the older map, too.
-  /// `covariances[j]` is that of node j relative to the newest, in j's own frame. Returns every
-  /// attempt; the outcome of those that look good is kPending.
+  /// gate. While the session is not localized, also matches it with all places of the older map.
+  /// `covariances[j]` is the covariance of node j relative to the newest, in j's own frame. Returns
+  /// every attempt. Attempts that may be accepted have the outcome kPending.
   std::vector<Closure> Propose(const Nodes& nodes, const Session& session, double timestamp,
                                const std::vector<Eigen::Matrix3d>& covariances);
 
@@ -35,7 +35,7 @@ class ClosureFinder {
 
   ClosureFinderOptions options_;
   std::optional<PlaceFinder> place_finder_;  // while the session is not localized
-  int place_finder_nodes_ = 0;               // how many nodes its map is made of
+  int place_finder_nodes_ = 0;               // number of nodes in its map
 };
 
 }  // namespace loopgrid

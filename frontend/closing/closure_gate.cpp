@@ -17,7 +17,7 @@ double SigmasBeyond(const Eigen::Vector2d& offset, double reach,
   return std::sqrt(beyond.dot(covariance.ldlt().solve(beyond)));
 }
 
-// The newest node as a candidate's view of it; nothing if it is outside the gate.
+// The old node as a candidate; nothing if the newest node is outside its gate.
 std::optional<ClosureCandidate> Gate(const SE2& T_old_newest, const Eigen::Matrix3d& covariance,
                                      const ClosureGateOptions& options) {
   const Eigen::Vector2d p = T_old_newest.translation();

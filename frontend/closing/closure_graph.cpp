@@ -14,7 +14,7 @@ namespace {
 
 OptimizerOptions WhileGrowing(const ClosureGraphOptions& options) {
   OptimizerOptions optimizer;
-  optimizer.careful_covariances = false;  // matches differ little in information
+  optimizer.careful_covariances = false;  // the information of matches differs little
   optimizer.loss = options.loss;
   optimizer.max_iterations = options.max_iterations;
   optimizer.relative_decrease = options.relative_decrease;
@@ -106,7 +106,7 @@ bool ClosureGraph::TryClosures(std::span<const ClosureConstraint> closures,
   for (const ClosureConstraint& closure : closures) AddConstraint(closure.id, closure.constraint);
   optimizer_.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
-    // Old closures give way to new ones only while those are more.
+    // At most as many old closures are removed as new ones stay.
     --(worst < old_ones ? old_ones : new_ones);
     contradicted.push_back(ids_[static_cast<std::size_t>(worst)]);
     const int given_up = static_cast<int>(ids_before.size()) - old_ones;
@@ -138,7 +138,8 @@ std::vector<ClosureId> ClosureGraph::Settle(std::span<const ClosureConstraint> l
   Optimizer<SE2> optimizer(AtTheEnd(options_));
   optimizer.Optimize(&graph_);
   for (int worst = WorstClosure(); worst >= 0; worst = WorstClosure()) {
-    // Wrong ones pull their neighbours off: take out those near the worst, then look again.
+    // A wrong closure raises the chi2 of its neighbours. So only those with the largest values are
+    // removed before the graph is optimised again.
     const double worst_chi2 = Chi2(graph_.constraints[static_cast<std::size_t>(worst)]);
     RemoveAbove(std::max(options_.max_chi2, 0.5 * worst_chi2), &removed);
     optimizer.Optimize(&graph_);

@@ -11,14 +11,14 @@
 
 namespace loopgrid {
 
-/// A closure as the graph takes it.
+/// A closure and its constraint.
 struct ClosureConstraint {
   ClosureId id = kNoClosure;
   Constraint<SE2> constraint;
 };
 
-/// The pose graph as SLAM grows it: a chain of nodes, and closures that are believed only as long
-/// as the rest of the graph lets them. Knows no scans.
+/// The pose graph: a chain of nodes, and closures between them. A closure that contradicts the rest
+/// of the graph is removed. This class knows no scans.
 class ClosureGraph {
  public:
   explicit ClosureGraph(const ClosureGraphOptions& options = {});
@@ -26,26 +26,27 @@ class ClosureGraph {
   const PoseGraph<SE2>& graph() const { return graph_; }
   int size() const { return static_cast<int>(graph_.poses.size()); }
 
-  /// Adds a node at `T_map_node`, joined to `parent` (-1: the last one) by what `T_parent_node`
-  /// (with `covariance`, frame of the new node) says. The first node takes no constraint.
+  /// Adds a node at `T_map_node` and a constraint from `parent` (-1: the last node) with the
+  /// measured pose `T_parent_node` and its `covariance` (frame of the new node). The first node
+  /// gets no constraint.
   void AddNode(const SE2& T_map_node, const SE2& T_parent_node, const Eigen::Matrix3d& covariance,
                int parent = -1);
 
-  /// Moves all nodes from `first` on by the same motion of the map frame.
+  /// Moves all nodes from `first` on by the same `motion` in the map frame.
   void MoveNodes(int first, const SE2& motion);
 
-  /// Adds closures and optimises. As long as that leaves some closure, old or new, off by more than
-  /// max_chi2, the worst goes out again; old ones only while fewer than the new ones that stay. If
-  /// none of the new ones would stay, the graph is left as it was: false. The ids of those that
-  /// went out are put into `removed`.
+  /// Adds closures and optimises. While some closure, old or new, has a chi2 above max_chi2,
+  /// removes the one with the largest chi2 and optimises again. If no new closure can stay, or if
+  /// more old closures would have to go than new ones stay, restores the graph and returns false.
+  /// Otherwise `removed` holds the ids of the removed closures.
   bool TryClosures(std::span<const ClosureConstraint> closures,
                    std::vector<ClosureId>* removed = nullptr);
 
-  /// Ends the run: adds `links`, optimises to convergence, and takes out closures and links that
-  /// are off by more than max_chi2, the worst first. Returns the ids of those.
+  /// Ends the run: adds `links`, optimises to convergence, and removes closures and links with a
+  /// chi2 above max_chi2, the largest first. Returns the ids of the removed ones.
   std::vector<ClosureId> Settle(std::span<const ClosureConstraint> links);
 
-  /// The closures in the graph; links have ids of their own or none.
+  /// The closures and links in the graph. A link has an id only if it was given one.
   std::vector<ClosureConstraint> Closures() const;
 
   /// Covariance of every node relative to the last one, each in its own frame.
@@ -54,14 +55,14 @@ class ClosureGraph {
   /// Covariance of every node relative to the first one, each in its own frame.
   const std::vector<Eigen::Matrix3d>& map_covariances() const { return map_covariances_; }
 
-  /// chi-square e^T Omega e of a constraint at the present poses.
+  /// chi2 of a constraint at the present poses: e^T Omega e.
   double Chi2(const Constraint<SE2>& constraint) const;
 
  private:
   void AddConstraint(ClosureId id, const Constraint<SE2>& constraint);
-  // Index of the constraint of the closure that is off the most, -1 if none is off too much.
+  // Index of the closure's constraint with the largest chi2; -1 if none is above max_chi2.
   int WorstClosure() const;
-  // Takes out the closures with a chi-square above `limit`, in the order of their constraints.
+  // Removes the closures with a chi2 above `limit`, in the order of their constraints.
   void RemoveAbove(double limit, std::vector<ClosureId>* removed);
   void UpdateCovariances(Optimizer<SE2>* optimizer, int relative_to);
 

@@ -12,10 +12,8 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kReported =
-    0.8;  // share of the least score from where on a failure says its score
-constexpr double kReportedSecond =
-    0.7;  // share of the best score from where on a second peak counts
+constexpr double kReported = 0.8;        // of the least score: failures above it report their score
+constexpr double kReportedSecond = 0.7;  // of the best score: second peaks above it are reported
 
 int LevelsFor(double half_width, double resolution) {
   int levels = 2;
@@ -23,7 +21,7 @@ int LevelsFor(double half_width, double resolution) {
   return levels;
 }
 
-// The part of the plane that the points can reach from anywhere in the window.
+// The box that the points can reach from all poses in the window.
 void Reach(std::span<const Eigen::Vector2f> points, const SE2& center, const SearchWindow& window,
            Eigen::Vector2f* lower, Eigen::Vector2f* upper) {
   Eigen::Vector2d low = center.translation();
@@ -43,8 +41,8 @@ void Reach(std::span<const Eigen::Vector2f> points, const SE2& center, const Sea
   *upper = (high + extra).cast<float>();
 }
 
-// The likelihood table of the part of the map that a search in `window` can touch; nothing if there
-// is none.
+// The likelihood table of the part of the map that a search in `window` can use; nothing if that
+// part is empty.
 std::optional<LikelihoodTable> TableFor(const LocalMap& map,
                                         std::span<const Eigen::Vector2f> points, const SE2& center,
                                         const SearchWindow& window, double resolution,
@@ -69,7 +67,8 @@ std::optional<LikelihoodTable> TableFor(const LocalMap& map,
   return LikelihoodTable(surfaces, lower, upper, margin, cell, static_cast<float>(sigma), levels);
 }
 
-// Narrows a large window down to the best place in it. False if no place reaches the least score.
+// Replaces a large window by a small one around the best place in it. False if no place reaches the
+// least score.
 bool SearchCoarsely(const LocalMap& map, std::span<const Eigen::Vector2f> surroundings,
                     const ClosureMatcherOptions& options, SE2* center, SearchWindow* window,
                     ClosureMatch* match) {

@@ -10,7 +10,7 @@
 namespace loopgrid {
 namespace {
 
-// A covariance of motions in the frame of b, as motions in the frame of a.
+// Transforms a covariance from the frame of b to the frame of a.
 Eigen::Matrix3d Transported(const SE2& T_a_b, const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d A = T_a_b.Adjoint();
   return A * covariance * A.transpose();
@@ -61,8 +61,9 @@ void ClosureVerifier::Expire(ClosureList* closures) {
   pool_.clear();
 }
 
-// How far the graph may be off between two nodes that are `path` metres of travel apart. More than
-// tracking usually is, so that right closures agree in its bad moments, too.
+// Covariance of the graph's error between two nodes that are `path` metres of travel apart. It is
+// larger than the usual error of tracking, so that right closures agree also where tracking is
+// worse than usual.
 Eigen::Matrix3d ClosureVerifier::PathCovariance(double path) const {
   const double metres = std::min(path, options_.farthest_path);
   const double translation =
@@ -73,7 +74,7 @@ Eigen::Matrix3d ClosureVerifier::PathCovariance(double path) const {
 }
 
 double ClosureVerifier::Agreement(const Nodes& nodes, const Closure& a, const Closure& b) const {
-  // Round the loop: old a -> new a -> new b against old a -> old b -> new b.
+  // Both ways from old a to new b: old a -> new a -> new b, and old a -> old b -> new b.
   const SE2 old_step = nodes.Between(a.from, b.from);
   const SE2 new_step = nodes.Between(a.to, b.to);
   const Eigen::Vector3d error =
@@ -82,7 +83,7 @@ double ClosureVerifier::Agreement(const Nodes& nodes, const Closure& a, const Cl
       Transported(new_step.Inverse(), a.covariance) + b.covariance +
       PathCovariance(nodes.PathLength(a.to, b.to)) +
       Transported(b.T_from_to.Inverse(), PathCovariance(nodes.PathLength(a.from, b.from)));
-  // chi-square over its expectation, 3: two right closures score about exp(-1/2).
+  // chi2 divided by its expectation 3. Two right closures score about exp(-1/2).
   return std::exp(-error.dot(covariance.ldlt().solve(error)) / 6.0);
 }
 

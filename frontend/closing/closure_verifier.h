@@ -10,24 +10,24 @@
 
 namespace loopgrid {
 
-/// Believes proposed closures once several agree with each other: a loop of two closures and the
-/// ways between their nodes has to come back to where it began.
+/// Decides which proposed closures are accepted: those that agree with several others. Two closures
+/// agree if the loop of both and the paths between their nodes ends where it began.
 class ClosureVerifier {
  public:
   explicit ClosureVerifier(const ClosureVerifierOptions& options = {}) : options_(options) {}
 
-  /// Takes a pending closure into the pool of those that can agree.
+  /// Adds a pending closure to the pool of closures that are compared with each other.
   void Add(ClosureId id) { pool_.push_back(id); }
 
-  /// The pending closures that are to be believed now. `anywhere`: the session is not localized,
-  /// nothing but their agreement speaks for them. Those that have waited too long become
-  /// inconsistent.
+  /// The pending closures to be accepted now. `anywhere`: the session is not localized, so the
+  /// poses in the graph do not support them, and more of them have to agree. Closures that have
+  /// waited too long become inconsistent.
   std::vector<ClosureId> Verify(const Nodes& nodes, bool anywhere, ClosureList* closures);
 
-  /// Closures that the graph did not keep no longer support others.
+  /// Removes closures that the graph did not keep, so that they no longer support others.
   void Forget(std::span<const ClosureId> ids);
 
-  /// Empties the pool; what is still pending has found no others that agree with it.
+  /// Empties the pool. Closures that are still pending become inconsistent.
   void Expire(ClosureList* closures);
 
  private:

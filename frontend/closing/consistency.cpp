@@ -18,7 +18,7 @@ ConsistentSet FindConsistentSet(const Eigen::MatrixXd& agreement) {
   set.separation =
       second > 0.0 ? solver.eigenvalues()(n - 1) / second : std::numeric_limits<double>::infinity();
 
-  // Try every threshold: members in falling order of the eigenvector's entries.
+  // Try every threshold: add members in descending order of the eigenvector's entries.
   std::vector<int> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),

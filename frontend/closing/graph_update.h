@@ -11,12 +11,12 @@
 
 namespace loopgrid {
 
-/// A node on its way into the graph.
+/// A node to be added to the graph.
 struct NewNode {
   int parent = -1;  ///< the node that it is joined to; -1: it is the first
   SE2 T_parent_node;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of that, frame of the new node
-  double gap = 0.0;          ///< metres travelled since the node before, where that is not `parent`
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_parent_node, in its own frame
+  double gap = 0.0;          ///< metres travelled since the node before, if that is not `parent`
   bool new_session = false;  ///< the robot may be anywhere in the map
   double timestamp = 0.0;    ///< of its scan, seconds
   std::shared_ptr<const PointScan> scan;

@@ -20,7 +20,7 @@ std::vector<std::vector<int>> ClosuresOf(const Nodes& nodes) {
   return others;
 }
 
-// The nearest node of each other pass by node i.
+// The nearest node of each other pass near node i.
 std::vector<int> NearestOfEachPass(const Nodes& nodes, int i,
                                    const NeighbourLinkerOptions& options) {
   std::vector<int> nearest;
@@ -54,7 +54,7 @@ bool IsBelievable(const ClosureMatch& match, const SE2& predicted,
 
 std::vector<Constraint<SE2>> LinkNeighbours(const Nodes& nodes,
                                             const NeighbourLinkerOptions& options) {
-  // By the node whose map is matched with, so that each map is made once.
+  // Grouped by the node whose map is used, so that each map is made once.
   const std::vector<std::vector<int>> closures = ClosuresOf(nodes);
   std::vector<std::vector<int>> scans_for_map(static_cast<std::size_t>(nodes.size()));
   for (int i = 0; i < nodes.size(); ++i) {

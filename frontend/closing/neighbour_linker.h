@@ -9,9 +9,9 @@
 
 namespace loopgrid {
 
-/// Constraints between nodes that came by the same place on different passes and have no closure
-/// yet, for a graph that is right to a few centimetres: the scan of each node against the map
-/// around the nearest node of every other pass.
+/// Finds constraints between nodes of different passes by the same place that have no closure yet:
+/// matches the scan of each node with the map around the nearest node of every other pass. The
+/// graph has to be right to a few centimetres.
 std::vector<Constraint<SE2>> LinkNeighbours(const Nodes& nodes,
                                             const NeighbourLinkerOptions& options = {});
 

@@ -46,7 +46,7 @@ void NodePipeline::Join(const NewNode& node) {
   }
 }
 
-// Closures of the newest node are proposed, and those verified that agree with each other.
+// Proposes closures of the newest node. Returns the closures that are verified now.
 std::vector<ClosureId> NodePipeline::FindClosures(double timestamp) {
   bool is_any_pending = false;
   for (const Closure& closure :
@@ -60,14 +60,15 @@ std::vector<ClosureId> NodePipeline::FindClosures(double timestamp) {
   return verifier_.Verify(nodes_, !session_.localized, &closures_);
 }
 
-// True if the closures stay in the graph, which is optimised then.
+// Puts the closures into the graph and optimises it. False if the graph refuses them.
 bool NodePipeline::PutIntoGraph(std::span<const ClosureId> verified) {
   std::vector<ClosureConstraint> constraints;
   for (const ClosureId id : verified) {
     const Closure& c = closures_[id];
     constraints.push_back({id, {c.from, c.to, c.T_from_to, c.covariance.inverse(), true}});
   }
-  // The optimiser has to begin near the truth, and an unplaced session can be anywhere.
+  // The optimiser has to begin near the optimum, but a session that is not localized can be
+  // anywhere.
   const std::optional<SE2> motion = SessionMotion(verified);
   if (motion) graph_.MoveNodes(session_.first_node, *motion);
   std::vector<ClosureId> removed;
@@ -82,8 +83,8 @@ bool NodePipeline::PutIntoGraph(std::span<const ClosureId> verified) {
   return kept;
 }
 
-// How far the nodes of a session that does not know its place have to move for the verified
-// closures with the older map to hold; nothing if there are none.
+// The motion that moves the nodes of a session that is not localized to where the verified closures
+// with the older map put them; nothing if there are no such closures.
 std::optional<SE2> NodePipeline::SessionMotion(std::span<const ClosureId> verified) const {
   if (session_.localized) return std::nullopt;
   for (const ClosureId id : verified) {

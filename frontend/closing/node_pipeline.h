@@ -17,10 +17,9 @@
 
 namespace loopgrid {
 
-/// What happens to a node once tracking has handed it over: it joins the graph, closures are
-/// proposed, verified and put into the graph, and the graph is optimised. What that has changed
-/// goes back to tracking as a value. Shares nothing with tracking, so that it can run on a thread
-/// of its own.
+/// Processes a new node after tracking: adds it to the graph, proposes closures, verifies them,
+/// puts them into the graph and optimises it. Returns what has changed as a value. It shares no
+/// data with tracking, so it can run on a thread of its own.
 class NodePipeline {
  public:
   explicit NodePipeline(const ClosingOptions& options = {});

@@ -11,12 +11,11 @@
 
 namespace loopgrid {
 
-/// The one place where the thread that tracks and the thread that closes loops meet: nodes go in,
-/// and what each has changed in the graph comes out in the same order, whenever it is asked for.
+/// Connects the thread that tracks with the thread that closes loops. Takes new nodes, and gives
+/// the changes of the graph that each of them caused, in the same order.
 class NodeQueue {
  public:
-  /// `threaded`: nodes are treated on a thread of their own; otherwise at the moment that the
-  /// update is asked for.
+  /// `threaded`: nodes are processed on a second thread. Otherwise Take() processes them.
   explicit NodeQueue(bool threaded, const ClosingOptions& options = {});
   ~NodeQueue();
   NodeQueue(const NodeQueue&) = delete;
@@ -37,7 +36,7 @@ class NodeQueue {
   void Serve();
 
   NodePipeline pipeline_;
-  std::deque<std::future<GraphUpdate>> updates_;  // of the submitting thread alone
+  std::deque<std::future<GraphUpdate>> updates_;  // used by the submitting thread only
   std::mutex mutex_;                              // guards the next two
   std::deque<std::packaged_task<GraphUpdate()>> tasks_;
   bool is_ending_ = false;

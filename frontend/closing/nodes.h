@@ -15,11 +15,11 @@ struct NodeRange {
   int last = 0;
 };
 
-/// The nodes as the front-end sees them: a graph, and the scan that each node holds.
+/// The nodes of the graph with the scan of each.
 struct Nodes {
   const PoseGraph<SE2>* graph = nullptr;
   std::vector<const PointScan*> scans;
-  /// Metres travelled from the node before to those that are not joined to it.
+  /// For nodes without a constraint from the node before: the metres travelled since that node.
   std::map<int, double> gaps;
 
   int size() const { return static_cast<int>(scans.size()); }
@@ -29,7 +29,7 @@ struct Nodes {
   /// Pose of `b` in the frame of `a`.
   SE2 Between(int a, int b) const { return pose(a).Inverse() * pose(b); }
 
-  /// Length of the way from `node` to the next one, metres.
+  /// Length of the path from `node` to the next one, metres.
   double StepLength(int node) const;
 
   /// Length of the path along the nodes from `a` to `b`, metres.

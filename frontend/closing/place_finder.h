@@ -17,17 +17,17 @@ struct FoundPlace {
   ClosureMatch match;  ///< `T_map_robot` is relative to that node
 };
 
-/// Finds a robot that can be anywhere in a map, whichever way it looks.
+/// Finds a robot that can be anywhere in a map and have any orientation.
 class PlaceFinder {
  public:
-  /// The map is that of the first `count` nodes, where they are now.
+  /// The map is made of the first `count` nodes at their present poses.
   PlaceFinder(const Nodes& nodes, int count, const PlaceFinderOptions& options = {});
 
-  /// How many windows a search goes through.
+  /// Number of windows that a search goes through.
   int places() const { return static_cast<int>(centers_.size()); }
 
   /// The best place for `scan`, `surroundings` as in MatchClosure(), both in the robot frame. The
-  /// second score is that of the best other place. Nothing if no place reaches the scores.
+  /// second score is that of the best other place. Nothing if no place reaches the least scores.
   std::optional<FoundPlace> Find(const PointScan& scan,
                                  std::span<const Eigen::Vector2f> surroundings,
                                  const ClosureMatcherOptions& options) const;

@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// Statistics of errors, of which none is negative. All are zero if there are no errors.
+/// Statistics of errors that are 0 or positive. All are zero if there are no errors.
 struct ErrorSummary {
   std::size_t count = 0;
   double mean = 0.0;

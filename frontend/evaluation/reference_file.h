@@ -18,10 +18,10 @@ enum class ReferenceKind {
 
 using Reference = std::variant<Trajectory, std::vector<Relation>>;
 
-/// Guesses of which kind a file is; both kinds have eight numbers a line. It is a trajectory if
-/// more than half of its lines can be poses with a time: columns 2 and 3 a position within
-/// bounds, and the last four a quaternion whose norm is 0.9 to 1.1. Where the last four are
-/// `0 0 0 w`, which is also how a relation in the plane ends, w has to be 1 or -1 to within 0.01.
+/// Guesses of which kind a file is; both kinds have eight numbers a line. A file is a trajectory if
+/// more than half of its lines can be poses with a time: columns 2 and 3 are a position within
+/// bounds, and the last four a quaternion whose norm is 0.9 to 1.1. A relation in the plane also
+/// ends in `0 0 0 w`. For such lines w has to be 1 or -1 to within 0.01.
 ReferenceKind GuessReferenceKind(const NumberTable& table);
 
 /// Reads a reference as `kind`, or as GuessReferenceKind says if there is none. The file is read

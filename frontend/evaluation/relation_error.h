@@ -26,13 +26,13 @@ struct RelationErrorSummaries {
 struct RelationEvaluation {
   RelationErrorSummaries exact;         ///< both times have a pose within 0.1 ms
   RelationErrorSummaries interpolated;  ///< at least one time lies between two poses
-  std::size_t outside = 0;              ///< a time lies outside the trajectory; not judged
-  std::vector<RelationError> errors;    ///< of all that are judged, in the relations' order
+  std::size_t outside = 0;  ///< relations with a time outside the trajectory; not evaluated
+  std::vector<RelationError> errors;  ///< of all relations evaluated, in their order
 };
 
 /// The metric of Kuemmerle et al., "On measuring the accuracy of SLAM algorithms", 2009: the
-/// component-wise difference of estimated and given relative pose, its translation's norm in metres
-/// and its angle's size in degrees. Nothing is aligned.
+/// difference of estimated and given relative pose, component by component. The errors are the norm
+/// of its translation (metres) and the size of its angle (degrees). The trajectory is not aligned.
 RelationEvaluation EvaluateRelations(const Trajectory& trajectory,
                                      std::span<const Relation> relations);
 

@@ -16,8 +16,8 @@ struct Relation {
 };
 
 /// Relations as published with Kuemmerle et al., "On measuring the accuracy of SLAM algorithms",
-/// 2009: `t1 t2 x y z roll pitch yaw` a line, metres and radians; what is not in the plane is left
-/// out. Throws Error (kInput) `file:line: ...` for a line with an impossible pose, and for a table
+/// 2009: `t1 t2 x y z roll pitch yaw` a line, metres and radians; z, roll and pitch are not used.
+/// Throws Error (kInput) `file:line: ...` for a line with an impossible pose, and for a table
 /// without lines.
 std::vector<Relation> RelationsFrom(const NumberTable& table);
 

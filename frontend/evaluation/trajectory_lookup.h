@@ -13,11 +13,11 @@ class TrajectoryLookup {
  public:
   explicit TrajectoryLookup(const Trajectory& trajectory);
 
-  /// Index in the trajectory of the pose nearest in time, of several as near the first in file
-  /// order; none if even that is more than `tolerance` seconds away.
+  /// Index of the pose nearest in time; if several are equally near, the first in file order.
+  /// Nothing if the nearest is more than `tolerance` seconds away.
   std::optional<std::size_t> Nearest(double timestamp, double tolerance) const;
 
-  /// The pose between the two that bracket the time, translation and angle in proportion; none
+  /// Interpolates linearly between the two poses around the time, translation and angle. Nothing
   /// outside the time span.
   std::optional<SE2> Interpolate(double timestamp) const;
 

@@ -17,13 +17,13 @@ struct StampedPose {
 /// A trajectory in file order; its times may run backwards and repeat, as those of logs do.
 using Trajectory = std::vector<StampedPose>;
 
-/// Whether the quaternion's norm is 0.9 to 1.1: files have rounded ones.
+/// Whether the quaternion's norm is 0.9 to 1.1. Quaternions in files are rounded.
 bool IsNearUnitQuaternion(double qx, double qy, double qz, double qw);
 
 /// A trajectory in the format of the TUM RGB-D benchmark: `time x y z qx qy qz qw` a line, seconds
-/// and metres. Quaternions are normalised if IsNearUnitQuaternion; of rotations the yaw is kept.
-/// Throws Error (kInput) `file:line: ...` for a line that is not a pose, and for a table without
-/// lines.
+/// and metres. Quaternions are normalised if IsNearUnitQuaternion. Only the yaw of rotations is
+/// kept. Throws Error (kInput) `file:line: ...` for a line that is not a pose, and for a table
+/// without lines.
 Trajectory TrajectoryFrom(const NumberTable& table);
 
 /// Reads such a file. Throws Error (kInput) as ReadNumberTable and TrajectoryFrom do.

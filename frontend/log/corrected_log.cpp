@@ -17,7 +17,7 @@
 namespace loopgrid {
 namespace {
 
-/// The corrected poses, handed out one a scan.
+/// The corrected poses, one for each scan in turn.
 class CorrectedScans {
  public:
   CorrectedScans(std::string path, std::span<const CorrectedScan> scans)
@@ -110,7 +110,8 @@ CorrectedLogStatistics CorrectedLogWriter::FromCarmen(LineReader lines) {
   return statistics_;
 }
 
-/// The next line that is not too long. Where the file is damaged the log ends, as for the reader.
+/// The next line that is not too long. A damaged file ends where the damage begins, as for the
+/// reader.
 bool CorrectedLogWriter::NextLine(LineReader* lines, std::string_view* line) {
   try {
     while (lines->Next(line)) {

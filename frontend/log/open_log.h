@@ -7,8 +7,8 @@
 
 namespace loopgrid {
 
-/// Opens a log of any known kind: CARMEN text or MRPT rawlog, plain or gzipped, told apart by
-/// content. Throws Error (kInput) for a missing, unreadable or empty file, or a directory.
+/// Opens a log of any known kind: CARMEN text or MRPT rawlog, plain or gzipped. The content tells
+/// which. Throws Error (kInput) for a missing, unreadable or empty file, or a directory.
 std::unique_ptr<LogReader> OpenLog(const std::string& path, const LogReaderOptions& options = {});
 
 }  // namespace loopgrid

@@ -12,14 +12,14 @@ int CellsIn(double metres, float resolution) {
   return static_cast<int>(std::ceil(metres / static_cast<double>(resolution) - 1e-6));
 }
 
-// The rule for equal scores.
+// The order of candidates with equal scores.
 bool Precedes(const SearchOffset& a, const SearchOffset& b) {
   if (a.angle != b.angle) return a.angle < b.angle;
   if (a.y != b.y) return a.y < b.y;
   return a.x < b.x;
 }
 
-// 0 if the interval [low, low + length) holds 0, else the distance of its nearer end from 0.
+// The distance of the interval [low, low + length) from 0; it is 0 if the interval contains 0.
 int NearestToZero(int low, int length) {
   if (low > 0) return low;
   return std::max(-(low + length - 1), 0);
@@ -53,7 +53,8 @@ CorrelativeSearch::CorrelativeSearch(const LikelihoodTable& table,
     for (const Eigen::Vector2f& p : points) {
       const Eigen::Vector2i cell = table_.CellOf(
           {c * p.x() - s * p.y() + translation_x, s * p.x() + c * p.y() + translation_y});
-      // A point whose whole window is not inside the table only ever meets its empty margin.
+      // If the window of a point is not fully inside the table, the point can only reach the empty
+      // margin.
       const bool inside = cell.x() >= cells_x_ && cell.x() + cells_x_ < table_.width() &&
                           cell.y() >= cells_y_ && cell.y() + cells_y_ < table_.height();
       if (inside) indices.push_back(cell.y() * table_.width() + cell.x());

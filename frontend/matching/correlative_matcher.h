@@ -10,8 +10,8 @@
 
 namespace loopgrid {
 
-/// What the odometry says: a candidate this many sigmas from the window's centre loses
-/// `weight * sigmas^2 / 2` of its score. A weight of 0 ignores the prior.
+/// The odometry as a prior: a candidate n sigmas from the window's centre loses `weight * n^2 / 2`
+/// of its score. A weight of 0 ignores the prior.
 struct SearchPrior {
   double sigma_translation = 0.1;  ///< metres
   double sigma_rotation = 0.1;     ///< radians
@@ -28,15 +28,15 @@ struct SearchOffset {
 };
 
 struct SearchResult {
-  bool found = false;   ///< some candidate reached the asked-for score
-  SearchOffset offset;  ///< the best candidate; among equals the first by (angle, y, x)
+  bool found = false;   ///< some candidate reached the least score
+  SearchOffset offset;  ///< the best candidate; of equal ones the first by (angle, y, x)
   SE2 T_map_robot;
-  double score = 0.0;  ///< mean likelihood of the hits less the prior's penalty, at most 1
+  double score = 0.0;  ///< mean likelihood of the hits minus the prior's penalty, at most 1
 };
 
-/// Exhaustive search over (x, y, rotation) after Olson, "Real-time correlative scan matching"
-/// (ICRA 2009): all candidates on a lattice of one table cell and one angular step. A
-/// branch-and-bound over the table's pyramid finds exactly what trying every candidate would.
+/// Exhaustive search over (x, y, rotation) after Olson, "Real-time correlative scan matching" (ICRA
+/// 2009): all candidates on a lattice of one table cell and one angular step. Branch and bound over
+/// the table's pyramid finds the same candidate as trying all of them.
 class CorrelativeSearch {
  public:
   /// `points` in the robot frame; the window is centred on `T_map_robot`. `angle_step` in radians.
@@ -49,7 +49,7 @@ class CorrelativeSearch {
   SearchResult Best(double min_score) const;
 
   /// The best candidate away from `peak`: more than `cells` from it in x or y, or more than `steps`
-  /// in angle. Tells how unique the peak is.
+  /// in angle. Its score shows whether the peak is unique.
   SearchResult BestAwayFrom(const SearchOffset& peak, int cells, int steps, double min_score) const;
 
   /// Score of one candidate, by plain summation.

@@ -24,8 +24,8 @@ LikelihoodTable::LikelihoodTable(std::span<const Eigen::Vector2f> points,
   BuildPyramid(levels);
 }
 
-// Stamps a kernel around the cell of each point. Its rows are padded with zeros to whole strips, so
-// that the inner loop is a fixed number of byte maxima.
+// Draws a kernel around the cell of each point. The kernel's rows are padded with zeros to whole
+// strips, so that the inner loop computes a fixed number of byte maxima.
 void LikelihoodTable::Rasterize(std::span<const Eigen::Vector2f> points) {
   const int reach = static_cast<int>(std::ceil(3.0F * sigma_ / resolution_));
   const int side = 2 * reach + 1;

@@ -8,9 +8,9 @@
 
 namespace loopgrid {
 
-/// Olson's lookup table: how likely a hit is in each cell, given reference points; with a pyramid
-/// of maxima above it. Level k holds in each cell the largest value of the 2^k x 2^k cells that
-/// begin there, so one look-up bounds the value for every shift in [0, 2^k)^2.
+/// Olson's lookup table: how likely a hit is in each cell, given reference points; and a pyramid of
+/// maxima above it. A cell of level k holds the largest value of the 2^k x 2^k cells that begin
+/// there. So one look-up gives an upper bound of the value for every shift in [0, 2^k)^2.
 class LikelihoodTable {
  public:
   /// Covers [lower, upper] plus `margin` cells on each side with cells of `resolution` metres. A

@@ -7,15 +7,15 @@
 namespace loopgrid {
 namespace {
 
-// A hit on its way into a square.
+// A hit and the square that it falls into.
 struct Entry {
   std::uint64_t key = 0;  // square and direction of the normal
   Eigen::Vector2f position;
   Eigen::Vector2f normal;
 };
 
-// 0 without a normal, else 1..4: which quarter of the circle it points into. Both faces of a thin
-// wall so stay apart.
+// 0 without a normal, else 1..4: the quarter of the circle into which the normal points. This keeps
+// the two faces of a thin wall apart.
 std::uint64_t Facing(const Eigen::Vector2f& n) {
   if (n.isZero()) return 0;
   if (std::abs(n.x()) >= std::abs(n.y())) return n.x() > 0.0F ? 1 : 2;

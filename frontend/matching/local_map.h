@@ -9,15 +9,14 @@
 
 namespace loopgrid {
 
-/// A piece of surface: hits of several scans that fell into the same small square with like
-/// normals.
+/// A piece of surface: the mean of hits in the same small square with similar normals.
 struct Surfel {
   Eigen::Vector2f position;  ///< mean of the hits, metres
   Eigen::Vector2f normal;    ///< unit, towards where it was seen from; (0, 0) if unknown
   float weight = 0.0F;       ///< number of hits
 };
 
-/// A scan with its place, as the map takes it.
+/// A scan and its pose in the map.
 struct PlacedScan {
   const PointScan* scan = nullptr;
   SE2 T_map_robot;

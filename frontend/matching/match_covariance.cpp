@@ -51,7 +51,8 @@ Eigen::Matrix3d ScoreInformation(const LikelihoodTable& table,
   for (const Eigen::Vector2f& p : points) squares += static_cast<double>(p.squaredNorm());
   const double lever = std::max(std::sqrt(squares / static_cast<double>(points.size())), 0.1);
 
-  // Principal axes where a radian counts as the lever it moves the hits by.
+  // Principal axes. Radians are multiplied by a lever, so that they can be compared with metres:
+  // the distance that a hit moves per radian.
   const Eigen::Vector3d unit(1.0, 1.0, 1.0 / lever);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(unit.asDiagonal() * shape *
                                                                  unit.asDiagonal());
@@ -87,7 +88,7 @@ Eigen::Matrix3d ScoreInformation(const LikelihoodTable& table,
       }
     }
   }
-  // A peak narrower than the lattice's spacing is known no better than that.
+  // The lattice cannot resolve a peak narrower than its spacing.
   const Eigen::Vector3d grain = (0.3 * spacing).cwiseAbs2();
   const Eigen::Matrix3d covariance = weighted.Covariance() + Eigen::Matrix3d(grain.asDiagonal());
   const Eigen::Matrix3d evenly = even.Covariance() + Eigen::Matrix3d(grain.asDiagonal());
@@ -104,7 +105,7 @@ Eigen::Matrix3d ScoreInformation(const LikelihoodTable& table,
 Eigen::Matrix3d MatchCovariance(const LikelihoodTable& table,
                                 std::span<const Eigen::Vector2f> points, const RefinedMatch& match,
                                 const MatchCovarianceOptions& options) {
-  // The curvature of the score, as far as each hit's surface is the nearest reference point.
+  // The curvature of the score, if the surface of each hit is the nearest reference point.
   const double ratio = match.range_sigma / static_cast<double>(table.sigma());
   const Eigen::Matrix3d shape = options.hit_log_likelihood * ratio * ratio * match.information;
   const double translation = options.unknown_translation * options.unknown_translation;

@@ -50,10 +50,10 @@ NormalEquations Linearize(const LocalMap& map, const PointScan& scan, const SE2&
   return equations;
 }
 
-// Removes the information that errors of the normals seem to add. In a bare corridor each normal
-// that is off by an angle e adds about sin^2(e) to the information along the corridor, where a
-// right one adds nothing. In each principal direction the information that such errors explain is
-// subtracted; a direction that has no more than that loses all of it.
+// Removes the information that comes from errors of the normals. In a corridor without features a
+// normal with an error of angle e adds about sin^2(e) to the information along the corridor; a
+// right normal adds nothing. In each principal direction the information that such errors explain
+// is subtracted, down to zero.
 void DiscountNormalErrors(double normal_sigma, NormalEquations* equations) {
   if (equations->weight <= 0.0) return;
   const double lever = std::sqrt(std::max(equations->weighted_lever / equations->weight, 1e-6));

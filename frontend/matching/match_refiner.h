@@ -18,7 +18,7 @@ struct PosePrior {
 struct RefinedMatch {
   SE2 T_map_robot;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the hits alone, robot frame
-  double range_sigma = 0.0;   ///< of one hit across the surface, as the options had it, metres
+  double range_sigma = 0.0;   ///< of one hit across the surface, from the options, metres
   int used = 0;               ///< hits that found a surface
   double inlier_share = 0.0;  ///< hits near their surface, of all that have a normal
   double residual = 0.0;      ///< robust root mean square distance to the surfaces, metres

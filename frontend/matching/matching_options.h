@@ -2,14 +2,14 @@
 
 namespace loopgrid {
 
-/// Where to look: half widths around the initial pose, in the map's axes.
+/// The search window: half widths around the initial pose, along the map's axes.
 struct SearchWindow {
   double x = 0.3;         ///< metres
   double y = 0.3;         ///< metres
   double rotation = 0.2;  ///< radians
 };
 
-/// Which hits lie on one line of surface and so have a normal.
+/// Which hits lie on a straight piece of surface, so that a normal can be computed.
 struct NormalOptions {
   int neighbours = 3;      ///< hits on either side that the line is fitted to, at most
   double max_gap = 1.0;    ///< between consecutive hits of one surface, metres
@@ -21,17 +21,17 @@ struct NormalOptions {
   void Validate() const;
 };
 
-/// The no-return rule: which readings are hits, which say that nothing was met. The no-return value
-/// of a laser shows as a heap of readings at the very top of all those seen so far: more than a
-/// handful, and many more than in the bins below it.
+/// The no-return rule: which readings are hits, and which mean that the beam met nothing. The
+/// no-return value of a laser is found as a heap in the histogram of all readings so far: its two
+/// topmost bins, if they have enough readings and many more than the bins below them.
 struct SensorModelOptions {
-  double min_range = 0.05;      ///< readings below say "error", metres
-  double max_range = 40.0;      ///< beams this long hit too rarely to help, metres
+  double min_range = 0.05;      ///< shorter readings mean "error", metres
+  double max_range = 40.0;      ///< longer readings are too rare to help, metres
   double bin_width = 0.5;       ///< of the histogram of readings, metres
   int bins_below = 4;           ///< bins below the heap that it is compared with
   int heap_factor = 2;          ///< a heap has more than so many times the readings of those bins
   int min_heap = 8;             ///< ... and more readings than this
-  double min_heap_range = 4.0;  ///< a heap nearer than this is a room, metres
+  double min_heap_range = 4.0;  ///< a heap nearer than this is taken for walls, metres
   NormalOptions normals{};
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
@@ -50,14 +50,15 @@ struct RefinerOptions {
 };
 
 struct MatchCovarianceOptions {
-  /// Log-likelihood of a perfect hit over that of a miss. Below 1 because neighbouring beams err
-  /// together: calibrated so that chi-square of closed loops comes out near its expectation.
+  /// Log-likelihood of a perfect hit relative to that of a miss. The errors of neighbouring beams
+  /// are not independent. The value was chosen so that chi2 of closed loops is near its
+  /// expectation.
   double hit_log_likelihood = 4.0;
-  /// Least standard deviation that the lattice is laid for, metres. A finer lattice would lie
-  /// within one or two cells of the table, where the score is flat and looks as if nothing were
-  /// known.
+  /// The lattice is made for standard deviations of at least this size, metres. A finer lattice
+  /// would lie within one or two cells of the table, where the score is flat, and give too little
+  /// information.
   double narrowest = 0.02;
-  double widest = 0.4;                ///< the largest one, metres: beyond, the match knows nothing
+  double widest = 0.4;  ///< the largest one, metres; a match with a larger one is unknown
   double unknown_translation = 20.0;  ///< standard deviation that stands for "unknown", metres
   double unknown_rotation = 3.0;      ///< the same in radians
 
@@ -66,9 +67,10 @@ struct MatchCovarianceOptions {
 };
 
 struct VisibilityOptions {
-  double tolerance = 0.4;   ///< between a surface and the end of a beam that shows it, metres
-  double nearest = 0.3;     ///< closer surfaces are parts of the robot, metres
-  double farthest = 12.0;   ///< beyond, a small turn of the robot makes a beam miss, metres
+  double tolerance = 0.4;   ///< between a surface and the end of a beam that confirms it, metres
+  double nearest = 0.3;     ///< closer surfaces may be parts of the robot, metres
+  double farthest = 12.0;   ///< farther surfaces are not compared: a small error of the angle makes
+                            ///< beams miss them, metres
   double min_facing = 0.3;  ///< least cosine between beam and normal: a beam that grazes a wall
                             ///< passes it within the tolerance
 

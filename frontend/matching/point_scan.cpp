@@ -6,7 +6,8 @@
 namespace loopgrid {
 namespace {
 
-// The line through the surface around hits[i]: unit normal, or zero where the points form no line.
+// The unit normal of a line through the surface around hits[i]; zero if the points do not form a
+// line.
 Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::vector<int>& beams,
                          int i, const NormalOptions& options) {
   const auto max_gap = static_cast<float>(options.max_gap);
@@ -16,7 +17,8 @@ Eigen::Vector2f NormalAt(const std::vector<Eigen::Vector2f>& hits, const std::ve
     return hits[static_cast<std::size_t>(k)];
   };
   const auto beam = [&](int k) { return beams[static_cast<std::size_t>(k)]; };
-  // Grazing beams are far apart on the wall; always take the nearest neighbour on either side.
+  // Hits of grazing beams are far apart on the wall, so the nearest neighbour on each side is
+  // always used.
   const auto joined = [&](int a, int b) {
     return beam(b) - beam(a) <= 2 && (at(a) - at(b)).norm() < max_gap;
   };

@@ -19,7 +19,7 @@ struct PointScan {
 };
 
 /// Makes points of `scan`. Readings in [min_range, max_range) are hits; readings at or above
-/// `max_range` are no-returns; those below `min_range` say nothing.
+/// `max_range` are no-returns; those below `min_range` are left out.
 PointScan MakePointScan(const LaserScan& scan, double min_range, double max_range,
                         const NormalOptions& options = {});
 

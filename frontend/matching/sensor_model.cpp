@@ -18,7 +18,7 @@ void SensorModel::Learn(const LaserScan& scan) {
     if (bin >= histogram_.size()) histogram_.resize(bin + 1, 0);
     ++histogram_[bin];
   }
-  // A no-return value on the border of two bins (50.99, 51.01) heaps up in both.
+  // Readings of a no-return value on the border of two bins (50.99, 51.01) fall into both.
   const int bins = static_cast<int>(histogram_.size());
   if (bins < options_.bins_below + 2) return;
   const auto at = [&](int bin) { return histogram_[static_cast<std::size_t>(bin)]; };

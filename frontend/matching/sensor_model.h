@@ -7,14 +7,14 @@
 
 namespace loopgrid {
 
-/// Learns from the scans seen so far from which range on a reading means "no return", so that the
-/// user need not state it. Causal: how a scan is interpreted depends on it and earlier ones only.
+/// Finds out, from the scans so far, from which range on a reading means "no return". So the user
+/// need not state it. How a scan is interpreted depends only on it and on earlier scans.
 class SensorModel {
  public:
   explicit SensorModel(const SensorModelOptions& options = {})
       : options_(options), usable_range_(options.max_range) {}
 
-  /// Takes the readings of `scan` into account, then makes points of it.
+  /// Adds the readings of `scan` to the histogram, then makes points of the scan.
   PointScan Interpret(const LaserScan& scan);
 
   /// Readings at or above this are "no return", metres.

@@ -70,7 +70,7 @@ Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const S
     const Eigen::Vector2f p = rotation * surfel.position + translation;
     const float range = p.norm();
     if (range < nearest || range > farthest) continue;
-    // A beam that grazes a wall passes it within the tolerance.
+    // A beam that grazes a wall passes near it without being stopped; such beams are not compared.
     if ((rotation * surfel.normal).dot(p) > -min_facing * range) continue;
     const std::size_t sector = SectorOf(p);
     if (sectors.longest[sector] < 0.0F) continue;

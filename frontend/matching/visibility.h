@@ -7,7 +7,7 @@
 
 namespace loopgrid {
 
-/// What a placed scan says of the surfaces of a map.
+/// How a scan at a pose agrees with the surfaces of a map.
 struct Visibility {
   int confirmed = 0;  ///< surfels where a beam ended
   int denied = 0;     ///< surfels that a beam went through
@@ -16,8 +16,8 @@ struct Visibility {
   double denied_share() const;
 };
 
-/// Compares each surfel that faces the laser with the beams that go its way. A wrong place can put
-/// every hit on some wall and still look through other walls; then many surfels are denied.
+/// Compares each surfel that faces the laser with the beams in its direction. At a wrong pose every
+/// hit may lie on some wall, but beams then go through other walls: many surfels are denied.
 Visibility CompareVisibility(const LocalMap& map, const PointScan& scan, const SE2& T_map_robot,
                              const VisibilityOptions& options = {});
 

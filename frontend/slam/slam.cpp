@@ -24,7 +24,7 @@
 namespace loopgrid {
 namespace {
 
-// Nearly nothing is known of where a robot was carried to.
+// A large covariance: a robot that was carried may be nearly anywhere.
 Eigen::Matrix3d CarriedCovariance(const SE2& motion, const CarriedOptions& options) {
   const double sigma = options.distance + motion.translation().norm();
   return Eigen::Vector3d(sigma * sigma, sigma * sigma, 10.0).asDiagonal();
@@ -51,7 +51,7 @@ class Slam::Impl {
     result.scan = scans_.size() - 1;
     if (is_first || observation.new_session ||
         motion.translation().norm() > options_.carried.distance) {
-      // The first node; or the robot was carried, and a new chain of nodes begins.
+      // This is the first node, or the robot was carried and a new chain of nodes begins.
       BeginSession(motion, &result);
     } else {
       // The scan is matched with those of the latest nodes, to improve the odometry's estimate.
@@ -61,15 +61,16 @@ class Slam::Impl {
         ++steps_;
         is_known_ = is_known_ ? StaysKnown() : BecomesKnown();
         if (is_known_) {
-          // ... in a part of the map that is known well enough, it goes on from an old node;
+          // ... in a part of the map that is known well enough, its pose refers to an old node;
           ReferTo(known_nodes_.front());
         } else {
-          // ... elsewhere, the scan becomes a new node, and the match an edge that leads to it. The
-          // queue hands it to the NodePipeline: closures are sought with the old nodes whose 3
-          // sigma marginal covariance contains the robot, and with each the graph is optimised.
+          // ... elsewhere the scan becomes a new node, and the match becomes the edge to it. The
+          // queue passes the node to the NodePipeline. It searches for closures with the old nodes
+          // whose 3 sigma marginal covariance contains the robot, and optimises the graph with
+          // each.
           AddNode(EdgeFromReference(), &result);
         }
-        // The result for a node is taken over a few steps later: it moves the nodes of the map.
+        // The result for a node is applied a few steps later. It moves the nodes of the map.
         TakeUpdates(&result);
         SetTrackingMap();
       }
@@ -108,7 +109,7 @@ class Slam::Impl {
     return graph_.pose(robot_.reference()).Inverse() * pose;
   }
 
-  // Keeps the scan as points. Returns the motion since the one before, by odometry.
+  // Keeps the scan as points. Returns the motion since the scan before, by odometry.
   SE2 Keep(const Observation& observation) {
     if (!observation.T_odom_robot.coordinates().allFinite()) {
       throw Error(ErrorCode::kInput,
@@ -126,8 +127,8 @@ class Slam::Impl {
     return motion;
   }
 
-  // The robot may be anywhere now: the new chain of nodes is tied to the rest by what little the
-  // odometry says.
+  // The robot may be anywhere now. Odometry, with a large covariance, joins the new chain of nodes
+  // to the rest.
   void BeginSession(SE2 motion, TrackedScan* result) {
     result->matched = true;
     if (motion.translation().norm() > options_.carried.farthest) motion = SE2();
@@ -141,7 +142,7 @@ class Slam::Impl {
     }
     is_known_ = false;
     tracked_.clear();
-    reference_scan_ = result->scan;  // no scan was taken on the way
+    reference_scan_ = result->scan;  // there are no scans between the two nodes
     AddNode(std::move(node), result);
     SetTrackingMap();
   }
@@ -186,7 +187,7 @@ class Slam::Impl {
     while (std::ssize(tracked_) > options_.tracked_nodes) tracked_.pop_front();
   }
 
-  // Goes on from another node, which is near.
+  // From now on the robot's pose refers to another node, which is near.
   void ReferTo(int node) {
     robot_.ReferTo(node, graph_.pose(node).Inverse() * T_map_robot());
     reference_scan_ = scans_.size() - 1;
@@ -198,7 +199,7 @@ class Slam::Impl {
     }
   }
 
-  // Whether the robot is still where old nodes explain what it sees.
+  // Whether old nodes still explain the scan.
   bool StaysKnown() {
     const KnownSpaceOptions& known = options_.known_space;
     const Eigen::Vector2d position = T_map_robot().translation();
@@ -213,7 +214,7 @@ class Slam::Impl {
     return stays;
   }
 
-  // Whether the robot has come to where old nodes explain what it sees, and the graph says so too.
+  // Whether old nodes now explain the scan, and the graph agrees with the pose.
   bool BecomesKnown() {
     const KnownSpaceOptions& known = options_.known_space;
     if (!graph_.session().localized ||
@@ -251,7 +252,7 @@ class Slam::Impl {
     tracker_.SetMap(is_known_ ? Placed(known_nodes_) : Placed(tracked_), T_map_robot());
   }
 
-  // Says where the scan is, and forgets its points if the map does not need them.
+  // Fills in the pose of the scan. Drops its points if the map does not need them.
   void Describe(TrackedScan* result) {
     result->T_map_robot = T_map_robot();
     result->covariance = ComposeCovariances(graph_.covariance(robot_.reference()),
@@ -274,13 +275,13 @@ class Slam::Impl {
   SlamStatistics statistics_;
 
   RobotPose robot_;
-  int reference_scan_ = 0;     // the first one with this reference
+  int reference_scan_ = 0;     // the first scan with this reference
   double inlier_share_ = 0.0;  // of the latest match
-  std::int64_t steps_ = 0;     // of node_distance or node_angle
+  std::int64_t steps_ = 0;     // motions of node_distance or node_angle so far
 
   std::deque<int> tracked_;  // nodes that make the tracking map
   bool is_known_ = false;
-  std::vector<int> known_nodes_;  // ... in known space; the nearest first
+  std::vector<int> known_nodes_;  // those of known space, the nearest first
 };
 
 Slam::Slam(const SlamOptions& options) : impl_(std::make_unique<Impl>(options)) {}

@@ -14,17 +14,16 @@
 
 namespace loopgrid {
 
-/// What became of one scan.
+/// The result for one scan.
 struct TrackedScan {
   int scan = 0;     ///< its index, from 0
   SE2 T_map_robot;  ///< current best pose
-  /// Of that pose in the map, that is relative to the first node: the marginal covariance of the
-  /// node that the pose refers to, composed with what tracking knows of the way from there (the
-  /// odometry, fused with the match where there is one). Robot frame, order (x, y, theta), metres
-  /// and radians.
+  /// Covariance of the pose in the map, relative to the first node: the marginal covariance of the
+  /// node that the pose refers to, composed with the covariance of the path from there (odometry,
+  /// fused with the match if there is one). Robot frame, order (x, y, theta), metres and radians.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  bool matched = false;    ///< false: the match failed and odometry carried the pose
-  bool localized = true;   ///< false: a new session has not found itself in the old map yet
+  bool matched = false;    ///< false: the match failed, the pose comes from odometry alone
+  bool localized = true;   ///< false: the place of a new session in the old map is not known yet
   int node = -1;           ///< index of the node this scan became, -1 if none
   bool optimized = false;  ///< poses of older scans have moved
   std::vector<ClosureId> closures;  ///< those of closures() that are new or have changed
@@ -40,7 +39,7 @@ struct SlamTimes {
 
 struct SlamStatistics {
   std::int64_t scans = 0;
-  std::int64_t failed_matches = 0;  ///< scans carried by odometry alone
+  std::int64_t failed_matches = 0;  ///< scans that odometry alone placed
   std::int64_t unusable_scans = 0;  ///< scans with too few returns to match
   std::int64_t known_scans = 0;     ///< scans in known space: no nodes, no part of the map
   double error_before = 0.0;        ///< F of the final constraints at the odometry poses
@@ -77,7 +76,7 @@ class Slam {
   double scan_timestamp(int scan) const;
   SE2 scan_odometry(int scan) const;  ///< T_odom_robot as in the log
 
-  /// Best T_map_robot of every scan given so far.
+  /// Best T_map_robot of every scan so far.
   std::vector<SE2> ScanPoses() const;
 
   /// The returns of a scan, in the robot frame, metres; and the directions without a return.
@@ -87,15 +86,15 @@ class Slam {
 
   ScanPlace scan_place(int scan) const;
 
-  /// The scan's points, for other threads to keep; null if it adds nothing to the map.
+  /// The scan's points, which other threads may keep; null if it adds nothing to the map.
   std::shared_ptr<const PointScan> scan_points(int scan) const;
 
   /// Every closure tried so far, in order.
   const std::vector<Closure>& closures() const;
 
-  /// As of the last optimisation: covariance of every node relative to the last one then: the
-  /// diagonal blocks of the inverse of the reduced Hessian, in each node's own frame, order (x, y,
-  /// theta). The last one's is zero.
+  /// Covariance of every node relative to the last node, as of the last optimisation: the diagonal
+  /// blocks of the inverse of the reduced Hessian, in each node's own frame, order (x, y, theta).
+  /// That of the last node is zero.
   std::vector<Eigen::Matrix3d> NodeCovariances() const;
 
   SlamStatistics statistics() const;

@@ -6,21 +6,21 @@
 
 namespace loopgrid {
 
-/// Where the robot stands still, all its scans are the same: more than a few add nothing to the
-/// map.
+/// While the robot stands still, all scans are the same. Only a few of them are added to the map.
 struct StandstillOptions {
-  double distance = 0.05;  ///< scans this near are taken on one spot, metres ...
-  double angle = 0.05;     ///< ... if they are turned by no more than this, radians
+  double distance = 0.05;  ///< scans at most this far apart are from one spot, metres
+  double angle = 0.05;     ///< and turned by at most this much, radians
   int max_scans = 10;      ///< scans on one spot that are kept for the map
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;
 };
 
-/// A motion between two scans that no robot makes: it was carried, or its odometry began anew.
+/// A motion between two scans that is too long for a robot: it was carried, or its odometry was
+/// reset.
 struct CarriedOptions {
-  double distance = 10.0;    ///< longer motions are none, metres
-  double farthest = 1000.0;  ///< beyond, the odometry says nothing about the place, metres
+  double distance = 10.0;    ///< longer motions are taken for this, metres
+  double farthest = 1000.0;  ///< a longer one is not used to predict the place, metres
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;
@@ -36,10 +36,10 @@ struct SlamOptions {
 
   double node_distance = 0.5;     ///< a new node after this much travel, metres
   double node_angle = 0.5;        ///< ... or after this much turning, radians
-  int tracked_nodes = 20;         ///< the newest nodes, whose scans tracking matches with
+  int tracked_nodes = 20;         ///< number of newest nodes with whose scans tracking matches
   double unmatched_factor = 4.0;  ///< of the odometry's covariance where a match failed
-  int update_lag = 5;             ///< steps of the robot from a new node to what it changes
-  int threads = 2;  ///< 1: loops are closed in the calling thread; the result is the same
+  int update_lag = 5;  ///< the changes that a node causes are applied this many steps later
+  int threads = 2;     ///< 1: loops are closed in the calling thread; the result is the same
 
   SensorModelOptions sensor{};
   TrackerOptions tracker{};

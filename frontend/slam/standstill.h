@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// Counts scans taken on one spot: a robot may be parked for hours.
+/// Counts scans taken on one spot, because a robot may be parked for hours.
 class Standstill {
  public:
   explicit Standstill(const StandstillOptions& options) : options_(options) {}
@@ -15,7 +15,7 @@ class Standstill {
 
  private:
   StandstillOptions options_;
-  SE2 spot_;  // where the robot was when it last moved
+  SE2 spot_;  // pose after the last motion of the robot
   int scans_ = 0;
 };
 

@@ -16,7 +16,7 @@ int TrackingGraph::Add(const NewNode& node, std::int64_t step) {
   return index;
 }
 
-// Puts a node at the end of the graph, where tracking has it.
+// Adds a node at the pose that tracking found.
 void TrackingGraph::Append(const Waiting& node) {
   if (node.parent < 0) {
     graph_.poses.push_back(node.T_parent_node);
@@ -31,7 +31,7 @@ void TrackingGraph::Append(const Waiting& node) {
 }
 
 bool TrackingGraph::ApplyOldest(GraphUpdate update, std::vector<ClosureId>* changed) {
-  // What the pipeline says of nodes before the session was true then.
+  // Updates of nodes before the session say nothing about the session's place.
   if (waiting_.front().index >= session_.first_node) session_.localized = update.localized;
   waiting_.pop_front();
   return Apply(std::move(update), changed);

@@ -12,9 +12,9 @@
 
 namespace loopgrid {
 
-/// The graph as tracking sees it. A new node stands in it at once, where tracking put it. What the
-/// pipeline makes of the node is applied a fixed number of the robot's steps later, however fast or
-/// slow the machine is, so that the result does not depend on it.
+/// The graph that tracking uses. A new node is added at once, at the pose that tracking found. The
+/// changes that the pipeline makes because of the node are applied a fixed number of steps of the
+/// robot later. So the result does not depend on the speed of the machine.
 class TrackingGraph {
  public:
   /// Updates are applied `lag` steps after their node was added.
@@ -45,7 +45,7 @@ class TrackingGraph {
     return map_covariances_[static_cast<std::size_t>(node)];
   }
 
-  /// As of the last optimisation: of every node relative to the last one then.
+  /// Covariance of every node relative to the last node, as of the last optimisation.
   const std::vector<Eigen::Matrix3d>& relative_covariances() const { return relative_covariances_; }
 
   const std::vector<Closure>& closures() const { return closures_; }
@@ -69,7 +69,7 @@ class TrackingGraph {
 
   int lag_;
   std::deque<Waiting> waiting_;
-  PoseGraph<SE2> graph_;  // as the pipeline left it, with the waiting nodes added
+  PoseGraph<SE2> graph_;  // as of the last update, with the waiting nodes added
   std::vector<Eigen::Matrix3d> map_covariances_;
   std::vector<Eigen::Matrix3d> relative_covariances_;
   std::vector<Closure> closures_;

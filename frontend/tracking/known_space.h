@@ -12,8 +12,9 @@ namespace loopgrid {
 std::vector<int> NearestNodes(const PoseGraph<SE2>& graph, int end, const Eigen::Vector2d& position,
                               int count);
 
-/// How many nodes, counted from the first one, are old: not among the newest, and not within the
-/// latest metres of travel. All nodes before node `session`, the first of the session, are old.
+/// Number of old nodes, counted from the first one. A node is old if it is not among the newest and
+/// not within the latest metres of travel. All nodes before node `session`, the first of the
+/// session, are old.
 int NodesBehind(const PoseGraph<SE2>& graph, int session, const KnownSpaceOptions& options);
 
 /// Whether the map is known at `position`: among the nodes before `end`, either one of an earlier

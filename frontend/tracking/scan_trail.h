@@ -15,7 +15,7 @@ struct ScanPlace {
   SE2 T_node_robot;
 };
 
-/// A scan as it is kept.
+/// What is kept of a scan.
 struct ScanEntry {
   double timestamp = 0.0;                   ///< seconds
   SE2 T_odom_robot;                         ///< as in the log
@@ -36,19 +36,20 @@ class ScanTrail {
   void Add(ScanEntry scan) { scans_.push_back(std::move(scan)); }
 
   /// Makes a node of the latest scan. The scans from `first_scan` on that belong to `parent` were
-  /// taken on the way from there to the new node; `T_parent_node` is that way as tracked.
+  /// taken on the path from there to the new node; `T_parent_node` is the pose of the new node in
+  /// `parent` as tracked.
   void AddNode(int parent, const SE2& T_parent_node, int first_scan);
 
   const PointScan* NodePoints(int node) const {
     return (*this)[node_scans_[static_cast<std::size_t>(node)]].points.get();
   }
 
-  /// Pose of a scan, from the pose of its node. What `graph` has changed between this node and the
-  /// next is distributed over the scans on the way, in proportion to their number.
+  /// Pose of a scan, from the pose of its node. If `graph` has changed the pose of the next node
+  /// relative to this one, the change is distributed evenly over the scans between them.
   SE2 Pose(int scan, const PoseGraph<SE2>& graph) const;
 
  private:
-  // How a node was reached.
+  // The path to a node.
   struct Way {
     int parent = -1;
     SE2 T_parent_node;

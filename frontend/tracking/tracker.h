@@ -21,7 +21,7 @@ struct TrackedPose {
   double inlier_share = 0.0;  ///< of the refined match, 0..1
 };
 
-/// Follows the robot from scan to scan: correlative search around the odometry's prediction in a
+/// Tracks the robot from scan to scan: a correlative search around the odometry's prediction in a
 /// map of recent nodes, then continuous refinement.
 class Tracker {
  public:
@@ -36,9 +36,10 @@ class Tracker {
   const SE2& pose() const { return T_map_robot_; }
 
  private:
-  /// What the search in a window around the prediction yields.
+  /// Searches in a window around the prediction.
   TrackedPose Match(const PointScan& scan, const SE2& predicted, const SE2& motion) const;
-  /// Searches all around: the odometry can be quite wrong after a slip or a gap in the log.
+  /// Searches in all directions, because odometry can be very wrong after a slip or a gap in the
+  /// log.
   TrackedPose MatchWithoutOdometry(const PointScan& scan, const SE2& predicted) const;
   TrackedPose Refine(const PointScan& scan, std::span<const Eigen::Vector2f> points,
                      const SearchResult& found, const PosePrior& prior,

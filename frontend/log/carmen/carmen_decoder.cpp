@@ -66,7 +66,7 @@ void CarmenDecoder::AddScan() {
   const CarmenLaserMessage& message = interpreter_.message();
   const CarmenLaserParameters& parameters = interpreter_.parameters().Of(message.tag);
   if (message.tag != mount_of_) {
-    Finish();  // nothing more will be known about the mount of the laser before
+    Finish();  // the mount of the laser used so far is decided now
     mount_of_ = message.tag;
     mount_ = LaserMount(parameters.T_robot_laser());
   }

@@ -13,9 +13,10 @@
 namespace loopgrid {
 
 /// Makes observations out of the lines of a CARMEN log as they arrive: after each line, Next()
-/// gives out what is ready. The laser's mount is what PARAM lines state. Without them it is found
-/// from the pairs of poses in the laser messages (see LaserMount), for which the first scans are
-/// held back until the robot has moved. If these do not tell, the laser is in the robot's centre.
+/// returns the observations that are ready. The laser's mount comes from PARAM lines. Without them
+/// it is found from the pairs of poses in the laser messages (see LaserMount). For this the first
+/// scans are held back until the robot has moved. If the poses do not tell, the laser is taken to
+/// be at the robot's centre.
 class CarmenDecoder {
  public:
   /// `name` is the log's, for messages about its lines.
@@ -26,20 +27,21 @@ class CarmenDecoder {
   /// (kInput) `name:line: ...` in strict mode, if the line is malformed.
   void AddLine(std::string_view line, bool terminated = true, bool too_long = false);
 
-  /// Takes note that the log broke off; `problem` begins with its name. Counts as malformed.
+  /// Call when the log ends too early, for example in damaged gzip data. `problem` begins with the
+  /// log's name. It counts as malformed.
   void BreakOff(const std::string& problem);
 
-  /// The log is over: scans held back so far are ready now.
+  /// Call at the end of the log: scans held back so far are then ready.
   void Finish();
 
   /// The next observation that is ready, in the order of the log; false if there is none (yet).
   bool Next(Observation* observation);
 
-  /// Number, from 1, of the line that the last observation from Next() stood in. For scans that
-  /// were held back it is less than the number of lines taken so far, which statistics() has.
+  /// Number, from 1, of the line of the last observation from Next(). For scans that were held back
+  /// it is smaller than the number of lines taken so far (see statistics()).
   std::int64_t observation_line() const { return observation_line_; }
 
-  /// Whether there are scans that Next() has not given out yet.
+  /// Whether there are scans that Next() has not returned yet.
   bool holds_scans() const { return !pending_.empty(); }
 
   const LogStatistics& statistics() const { return statistics_; }

@@ -8,15 +8,15 @@
 
 namespace loopgrid {
 
-/// A pose as CARMEN's messages have it: `x y theta`, to micrometres and microradians.
+/// The text of a pose in CARMEN's messages: `x y theta`, to micrometres and microradians.
 std::string CarmenPose(const SE2& pose);
 
-/// The PARAM lines that put the front laser, or the rear one, where it sits on the robot.
+/// The PARAM lines that state the mount of the front or the rear laser on the robot.
 std::string CarmenMountLines(bool front, const SE2& T_robot_laser);
 
 /// A whole ROBOTLASER1 or ROBOTLASER2 line with its line end: the scan with the laser's pose as
 /// given and the robot's as in the odometry, without remissions, `log_time` seconds into the log.
-/// CARMEN's beams go counter-clockwise; those of a scan that does not are turned round.
+/// CARMEN's beams go counter-clockwise. The order of beams that go clockwise is reversed.
 std::string CarmenRobotLaserLine(bool front, const Observation& observation, const SE2& T_map_laser,
                                  double log_time);
 

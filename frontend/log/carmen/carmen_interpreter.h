@@ -14,7 +14,7 @@ namespace loopgrid {
 /// been carried.
 inline constexpr std::string_view kNewSessionLine = "# loopgrid new-session";
 
-/// A line that broke off without its last field, which may have been cut short.
+/// Returns an unfinished line without its last field, because that field may be cut short.
 inline std::string_view WithoutCutField(std::string_view line) {
   return line.substr(0, line.find_last_of(" \t") + 1);
 }
@@ -22,7 +22,7 @@ inline std::string_view WithoutCutField(std::string_view line) {
 /// What a line of a CARMEN log means for a mapper.
 enum class CarmenMeaning {
   kScan,        ///< a scan of the laser in use
-  kOtherLaser,  ///< a scan of a laser that is not used because a better one is there
+  kOtherLaser,  ///< a scan of a laser that is not used because the log has a preferred one
   kOdometry,
   kParameter,
   kNewSession,  ///< kNewSessionLine
@@ -30,9 +30,10 @@ enum class CarmenMeaning {
   kMalformed,
 };
 
-/// Follows a CARMEN log line by line: keeps the parameters, the latest odometry and which laser is
-/// in use. That is the best one met so far in the order of CarmenTag, so a log with both lasers
-/// gives the front one's scans and a log with only a rear laser gives these.
+/// Reads a CARMEN log line by line: keeps the parameters, the latest odometry and the laser in use.
+/// The laser in use is the first in the order of CarmenTag among those met so far. So a log with
+/// both lasers gives the front laser's scans, and a log with only a rear laser gives the rear
+/// laser's.
 class CarmenInterpreter {
  public:
   /// Takes the next line. In one that is not `terminated` the last field may have been cut short
@@ -42,8 +43,8 @@ class CarmenInterpreter {
   /// After kScan and kOtherLaser: the message.
   const CarmenLaserMessage& message() const { return message_; }
 
-  /// After kScan: the message as an observation, but for the laser's mount. RAWLASER messages take
-  /// the latest ODOM line's pose; what comes before the first of these stands at the origin.
+  /// After kScan: the message as an observation, without the laser's mount. RAWLASER messages get
+  /// the pose of the latest ODOM line. Those before the first ODOM line get the pose (0, 0, 0).
   Observation MakeObservation() const;
 
   const CarmenParameters& parameters() const { return parameters_; }

@@ -71,7 +71,8 @@ std::string SkipRemissions(FieldCursor* fields) {
   return problem;
 }
 
-/// The laser's own description that ROBOTLASER and RAWLASER begin with, up to the readings.
+/// Reads the description of the laser at the beginning of ROBOTLASER and RAWLASER, up to the
+/// readings.
 std::string ParseSensor(FieldCursor* fields, CarmenLaserMessage* message) {
   constexpr double kFullTurn = 2.0 * std::numbers::pi;
   double laser_type = 0.0;

@@ -10,8 +10,8 @@
 
 namespace loopgrid {
 
-/// The messages of a CARMEN log that matter here. Lasers come in the order of preference: of two
-/// that a log carries, the first one of this list is used.
+/// The messages of a CARMEN log that are read. Lasers are listed in the order of preference: if a
+/// log has several, the first one in this list is used.
 enum class CarmenTag {
   kFlaser,
   kRobotLaser1,
@@ -31,7 +31,7 @@ CarmenTag TagOf(std::string_view line);
 
 inline bool IsLaser(CarmenTag tag) { return tag <= CarmenTag::kRawLaser4; }
 
-/// A laser message as its line has it.
+/// The fields of a laser message.
 struct CarmenLaserMessage {
   CarmenTag tag = CarmenTag::kOther;
   double timestamp = 0.0;  ///< ipc_timestamp, seconds
@@ -39,7 +39,7 @@ struct CarmenLaserMessage {
   bool has_poses = false;  ///< RAWLASER messages have none
   SE2 T_odom_laser;
   SE2 T_odom_robot;
-  std::size_t laser_pose_begin = 0;  ///< where in the line the laser's pose stands, in bytes
+  std::size_t laser_pose_begin = 0;  ///< offset of the laser's pose in the line, bytes
   std::size_t laser_pose_end = 0;
 
   bool has_angles = false;          ///< FLASER and RLASER messages have none
@@ -50,9 +50,9 @@ struct CarmenLaserMessage {
   std::vector<float> ranges;        ///< metres, finite and not negative
 };
 
-/// Reads a line of one of the laser tags. Returns what is wrong with it, or an empty string;
-/// `message` is then complete. No reading gets through that is NaN, infinite or negative, no count
-/// above `kMaxReadings`, no implausible pose.
+/// Reads a line of one of the laser tags. Returns what is wrong with it, or an empty string if
+/// `message` is complete. Refuses readings that are NaN, infinite or negative, counts above
+/// `kMaxReadings`, and implausible poses.
 std::string ParseLaserLine(std::string_view line, CarmenLaserMessage* message);
 
 /// Reads an ODOM line's pose; returns what is wrong with it, or an empty string.

@@ -18,7 +18,7 @@ struct CarmenLaserParameters {
   double resolution = 0.0;  ///< laser_front_laser_resolution, degrees; 0: not given
   double max_range = 0.0;   ///< robot_front_laser_max, metres; 0: not given
 
-  bool has_mount = false;  ///< a line put the laser elsewhere than at the robot's centre
+  bool has_mount = false;  ///< a PARAM line gave the laser's place on the robot
 
   SE2 T_robot_laser() const { return SE2(x, y, theta); }
 };
@@ -29,7 +29,7 @@ bool IsFrontLaser(CarmenTag tag);
 /// Whether a message is of the rear laser: RLASER, ROBOTLASER2, RAWLASER2.
 bool IsRearLaser(CarmenTag tag);
 
-/// The parameters of a CARMEN log as far as they concern its lasers. They hold from their line on.
+/// The parameters of a CARMEN log that are about its lasers. They hold from their line on.
 class CarmenParameters {
  public:
   CarmenParameters();
@@ -38,8 +38,8 @@ class CarmenParameters {
   /// or an empty string.
   std::string Apply(std::string_view line, bool* known);
 
-  /// Of the front laser, of the rear one, which looks backwards unless told otherwise, or of the
-  /// others, of which no parameters are known.
+  /// The parameters of the front laser, of the rear laser (it looks backwards if no line says
+  /// otherwise), or of other lasers (they have the defaults).
   const CarmenLaserParameters& Of(CarmenTag tag) const;
 
  private:
@@ -47,7 +47,7 @@ class CarmenParameters {
 };
 
 /// The directions of a message's beams. ROBOTLASER and RAWLASER state them. For FLASER and RLASER
-/// the resolution comes from PARAM if given there, and the fan is as in UsualBeamAngles().
+/// the resolution comes from PARAM if it is given there; the fan is that of UsualBeamAngles().
 BeamAngles BeamAnglesOf(const CarmenLaserMessage& message, const CarmenLaserParameters& parameters);
 
 }  // namespace loopgrid

@@ -6,8 +6,8 @@
 
 namespace loopgrid {
 
-/// Reads CARMEN text logs as CarmenDecoder understands them. If the file or its gzip data break
-/// off, all that comes before is given out.
+/// Reads CARMEN text logs with a CarmenDecoder. If the file or its gzip data are cut, all scans
+/// before the cut are returned.
 class CarmenReader : public LogReader {
  public:
   CarmenReader(LineReader lines, const LogReaderOptions& options);

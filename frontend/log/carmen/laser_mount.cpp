@@ -6,8 +6,8 @@
 namespace loopgrid {
 namespace {
 
-constexpr double kSame = 1e-4;          // metres and radians: equal but for rounding
-constexpr double kConstant = 5e-3;      // metres and radians: what a fixed mount may vary
+constexpr double kSame = 1e-4;          // metres and radians: equal except for rounding
+constexpr double kConstant = 5e-3;      // metres and radians: largest variation of a fixed mount
 constexpr double kLargestMount = 2.0;   // metres
 constexpr double kEnoughTravel = 0.2;   // metres
 constexpr double kEnoughTurning = 0.2;  // radians

@@ -10,7 +10,7 @@ namespace loopgrid {
 /// In a raw log the laser's pose is the robot's pose times the mount, in every message. In a log
 /// that another mapper corrected, the laser's pose is that mapper's estimate, and the difference of
 /// the two poses says nothing about the mount. Both kinds of log look the same until the robot has
-/// driven and turned, so the decision waits for that.
+/// driven and turned. So the decision is made after that.
 class LaserMount {
  public:
   /// `fallback` is the mount if the poses do not decide it.
@@ -19,10 +19,10 @@ class LaserMount {
   /// Takes the poses of the next message, until decided.
   void Add(const SE2& T_odom_laser, const SE2& T_odom_robot);
 
-  /// Decides by what is known so far.
+  /// Decides now, from the poses so far.
   void Decide();
 
-  /// Decides for a mount that is known from elsewhere.
+  /// Sets a mount that is known from elsewhere.
   void Set(const SE2& T_robot_laser);
 
   bool decided() const { return decided_; }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The field of view of scanners with so many steps between beams, radians.
+/// The usual field of view of scanners with this number of steps between beams, radians.
 double UsualFieldOfView(std::size_t steps) {
   switch (steps) {
     case 400:

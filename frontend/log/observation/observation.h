@@ -10,12 +10,12 @@ namespace loopgrid {
 inline constexpr int kMaxReadings = 1 << 14;
 
 /// Readers of logs replace longer readings by this one, metres. No planar laser sees so far, so
-/// that they can only mean "no return", and all that is computed from them stays finite.
+/// such readings can only mean "no return". The limit keeps all numbers computed from readings
+/// finite.
 inline constexpr float kFarthestReading = 1e4F;
 
-/// One sweep of a planar laser as the log has it. There is at least one range, and all are finite
-/// and not negative. Readings that stand for "no return" are among them; SensorModel tells them
-/// from walls.
+/// One sweep of a planar laser as the log has it. There is at least one range. All ranges are
+/// finite and not negative. Some of them may stand for "no return"; SensorModel finds out which.
 struct LaserScan {
   SE2 T_robot_laser;          ///< where the laser sits on the robot
   double first_angle = 0.0;   ///< of ranges[0] in the laser frame, radians
@@ -24,7 +24,7 @@ struct LaserScan {
   std::vector<float> ranges;  ///< metres
 };
 
-/// What a log yields: a scan with the odometry of its moment.
+/// What a log consists of: a scan with the odometry at its time.
 struct Observation {
   double timestamp = 0.0;  ///< seconds, as in the log; may run backwards
   SE2 T_odom_robot;        ///< wheel odometry at the scan

@@ -1,5 +1,5 @@
-// This file defines nothing else: the linker takes it only where the program defines no
-// OpenRawlog() of its own.
+// This file must define nothing else. The linker takes a file from a library only if it needs a
+// symbol of it. So a program that defines its own OpenRawlog() does not link this one.
 #include "frontend/log/rawlog/open_rawlog.h"
 
 #include <memory>

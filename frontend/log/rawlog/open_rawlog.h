@@ -7,8 +7,8 @@
 
 namespace loopgrid {
 
-/// A RawlogReader for the file. The library's definition is in open_rawlog.cpp. A program that
-/// defines the function itself takes the place of that definition, and does not link MRPT then.
+/// A RawlogReader for the file. The library defines this function in open_rawlog.cpp. A program may
+/// define the function itself. Its definition is then used, and MRPT is not linked.
 std::unique_ptr<LogReader> OpenRawlog(InputFile file, const LogReaderOptions& options);
 
 }  // namespace loopgrid

@@ -10,8 +10,8 @@ bool IsMrptClassName(std::string_view text) {
   return text.size() > 3 && begins_well && text.find_first_not_of(kAllowed) == text.npos;
 }
 
-// An object begins with the length of its class's name (with the highest bit set, or in old files
-// without it and as 32 bits) and the name, maybe with its namespace.
+// An object begins with the length of its class name and the name, with or without a namespace. The
+// length is a byte with the highest bit set, or in old files a number of 32 bits.
 bool LooksLikeRawlog(std::string_view start) {
   if (start.size() < 8) return false;
   const auto first = static_cast<unsigned char>(start[0]);

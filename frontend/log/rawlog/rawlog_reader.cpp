@@ -26,15 +26,15 @@ namespace loopgrid {
 namespace {
 
 constexpr double kHorizontal = 0.1;  // radians of roll and pitch
-constexpr double kSamePlace = 0.01;  // metres and radians: one laser, not another
+constexpr double kSamePlace = 0.01;  // metres and radians: poses this close are of the same laser
 
-/// Whether MRPT can make an object of a class: it knows it, and it is not abstract.
+/// Whether MRPT can make an object of a class: the class is registered and not abstract.
 bool IsKnownClass(const std::string& name) {
   const mrpt::rtti::TRuntimeClassId* known = mrpt::rtti::findRegisteredClass(name);
   return known != nullptr && known->ptrCreateObject != nullptr;
 }
 
-/// What MRPT reads objects from.
+/// The archive from which MRPT reads objects.
 class Archive : public mrpt::serialization::CArchive {
  public:
   explicit Archive(RawlogStream* stream) : stream_(stream) {}
@@ -95,7 +95,7 @@ std::string ConvertRanges(const mrpt::obs::CObservation2DRangeScan& from, LaserS
 }
 
 /// Converts the laser's pose and its beams' directions; returns what is wrong with them, or an
-/// empty string. A laser mounted upside down sweeps the other way round.
+/// empty string. A laser mounted upside down sweeps in the opposite direction.
 std::string ConvertGeometry(const mrpt::obs::CObservation2DRangeScan& from, LaserScan* scan) {
   constexpr double kPi = std::numbers::pi;
   const double aperture = from.aperture;
@@ -103,7 +103,8 @@ std::string ConvertGeometry(const mrpt::obs::CObservation2DRangeScan& from, Lase
   const std::size_t count = scan->ranges.size();
   BeamAngles angles{-0.5 * aperture,
                     count > 1 ? aperture / (static_cast<double>(count) - 1.0) : aperture};
-  // MRPT's converters spread the 180 readings that a SICK takes at full degrees over both ends.
+  // A SICK takes 180 readings at full degrees, without the last beam. MRPT's converters wrongly
+  // spread them over the whole fan, both ends included.
   const bool sick = (count == 180 || count == 360) && std::abs(aperture - kPi) < 1e-3;
   if (sick) angles = UsualBeamAngles(count);
   const bool upside_down = std::cos(from.sensorPose.roll()) < 0.0;
@@ -176,7 +177,7 @@ bool RawlogReader::Impl::ReadObject() {
   } catch (const Error& error) {
     problem = error.what();
   } catch (const std::exception& error) {
-    // MRPT adds text of its own to what the stream threw.
+    // MRPT adds its own text to the message that the stream threw.
     problem = stream_.failure().empty() ? Where() + FirstMessage(error.what()) : stream_.failure();
   }
   if (!problem.empty()) {
@@ -220,7 +221,7 @@ void RawlogReader::Impl::TakeActions(const mrpt::obs::CActionCollection& actions
 }
 
 void RawlogReader::Impl::TakeFrame(const mrpt::obs::CSensoryFrame& frame) {
-  for (const bool scans : {false, true}) {  // odometry first, wherever it stands in the frame
+  for (const bool scans : {false, true}) {  // odometry first, at any place in the frame
     for (const auto& observation : frame) {
       const bool is_scan = dynamic_cast<const Scan*>(observation.get()) != nullptr;
       if (observation && is_scan == scans) TakeObservation(*observation);

@@ -9,9 +9,9 @@ namespace loopgrid {
 
 /// Reads MRPT rawlogs: pairs of action and sensory frame, whose odometry increments are added up
 /// from the origin, and plain streams of observations with absolute odometry. Of several lasers the
-/// first horizontal one is used, told from the others by its label and pose. Readings flagged
-/// invalid are given out as the scan's maximum range. Objects have no length, so the log ends at
-/// the first that cannot be read (cut, corrupt or of an unknown class); it counts as malformed.
+/// first horizontal one is used, recognised by its label and pose. Readings flagged invalid become
+/// the scan's maximum range. The file does not give the length of an object, so the log ends at the
+/// first object that cannot be read (cut, corrupt or of an unknown class). It counts as malformed.
 class RawlogReader : public LogReader {
  public:
   /// Throws Error (kInput) on the first Next() if not even one object can be read.

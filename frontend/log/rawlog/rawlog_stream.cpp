@@ -42,9 +42,10 @@ void RawlogStream::ReadAll(char* bytes, std::size_t count) {
   }
 }
 
-// An object begins with one byte, the length of its class's name with kNewHeader, or in files older
-// than 2009 without it and with three bytes of zeros behind. Then come the name, the version (one
-// byte, or a word in old files), the fields, other objects among them, and in new files kEndFlag.
+// An object begins with one byte, the length of its class name with the flag kNewHeader. In files
+// older than 2009 the flag is missing and three bytes of zeros follow. Then come the name, the
+// version (one byte, or a word in old files), the fields (some are objects themselves), and in new
+// files kEndFlag.
 void RawlogStream::Watch(std::string_view bytes) {
   if (bytes.size() == 1) {
     const auto byte = static_cast<std::uint8_t>(bytes[0]);
@@ -84,7 +85,7 @@ void RawlogStream::CheckWord(std::uint32_t word) {
   if (std::exchange(version_follows_, false)) return;
   if (std::exchange(method_follows_, false)) {
     if (word > 1) Fail("a movement estimated in an unknown way");
-    needs_pose_pdf_ = word == 1;  // 0: from odometry, which follows instead
+    needs_pose_pdf_ = word == 1;  // 0: it was estimated from odometry, and no pose PDF follows
   } else if (in_scan_ && after_object_) {
     if (word > kMostReadings) Fail("a scan of " + std::to_string(word) + " readings");
     in_scan_ = false;

@@ -9,17 +9,16 @@
 
 namespace loopgrid {
 
-/// The stream that MRPT reads objects from, with checks. MRPT does not check a file: it goes on
-/// with whatever was in memory where bytes are missing, and crashes on null pointers and on
-/// allocations that fail. So a read here gives all the bytes asked for or throws. It also follows
-/// the names of classes and the two numbers that can do harm in the objects of planar laser
-/// rawlogs, and refuses values that would crash MRPT.
+/// The stream from which MRPT reads objects, with checks. MRPT does not check a file: where bytes
+/// are missing it uses what was in memory, and it crashes on null pointers and failed allocations.
+/// So Read() gives all the bytes asked for or throws. It also checks the names of classes, and two
+/// numbers in the objects of planar laser rawlogs that could crash MRPT.
 class RawlogStream {
  public:
   /// `is_known` tells whether MRPT can make an object of a class.
   RawlogStream(InputFile file, bool (*is_known)(const std::string& class_name));
 
-  /// Throws Error (kInput) if there are not so many bytes, or if they are not sound.
+  /// Throws Error (kInput) if the file has fewer bytes, or if they would crash MRPT.
   void Read(void* bytes, std::size_t count);
 
   InputFile& file() { return file_; }
@@ -39,7 +38,7 @@ class RawlogStream {
   bool (*is_known_)(const std::string&);
   std::string failure_;
 
-  std::size_t name_length_ = 0;   // if what comes is the name of a class
+  std::size_t name_length_ = 0;   // if the next bytes are the name of a class
   bool old_header_ = false;       // with a length of 32 bits
   bool version_follows_ = false;  // as a word, in old files
   bool method_follows_ = false;   // how a movement was estimated, as a word
