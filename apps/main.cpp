@@ -35,7 +35,8 @@ int ExitStatus(ErrorCode code) {
 }
 
 /// Opens the standard streams that the caller has closed. Otherwise the next file that is opened
-/// would get the number of such a stream, and with it what is printed. Writing to them still fails.
+/// would get the number of such a stream, and printed text would go into that file. Writing to
+/// these streams still fails.
 void OccupyStandardStreams() {
   int descriptor = 0;
   do {
@@ -91,8 +92,8 @@ int Complain(std::string message, int status) {
 
 int Main(int argc, char** argv) {
   OccupyStandardStreams();
-  // With these ignored, a closed pipe or a limit on file sizes makes write() fail; the error then
-  // names the file.
+  // When these signals are ignored, write() fails at a closed pipe or at the limit on file sizes.
+  // The error then names the file.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {

@@ -9,7 +9,7 @@
 
 namespace loopgrid {
 
-/// A value of an option as people write it.
+/// A value of an option and the word for it.
 template <typename Value>
 struct Choice {
   std::string_view name;

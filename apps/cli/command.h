@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// A command of the program: what it takes and what it does.
+/// A command of the program: its arguments and its action.
 struct Command {
   std::string name = {};
   std::string summary = {};  ///< one line
@@ -22,7 +22,7 @@ struct Program {
   std::string name = {};
   std::string version = {};
   std::string summary = {};
-  std::string footer = {};  ///< below the commands in the help, and where a command has none
+  std::string footer = {};  ///< below the commands in the help; also of commands without a footer
   std::vector<Command> commands = {};
 };
 

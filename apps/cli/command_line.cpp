@@ -1,4 +1,4 @@
-// The only file that knows CLI11.
+// The only file that includes CLI11, which takes long to compile.
 #include "apps/cli/command_line.h"
 
 #include <fmt/format.h>
@@ -59,7 +59,7 @@ void AddCommand(CLI::App* program, const Command& command) {
   if (!command.footer.empty()) app->footer(command.footer);
 }
 
-/// The command that has been named; null if none has.
+/// The command on the command line; null if there is none.
 const Command* CommandIn(const CLI::App& app, const Program& program) {
   for (const Command& command : program.commands) {
     if (app.got_subcommand(command.name)) return &command;

@@ -6,14 +6,14 @@
 
 namespace loopgrid {
 
-/// What a command line asks for.
+/// The meaning of a command line.
 struct Invocation {
-  const Command* command = nullptr;  ///< its targets are set; null: print `answer` and be done
+  const Command* command = nullptr;  ///< its targets are set; null: only print `answer`
   std::string answer = {};           ///< to --help or --version
 };
 
 /// Sets the targets of the command that the command line names. Throws Error (kUsage) if the line
-/// makes no sense; the message names the nearest right command or option where one was mistyped.
+/// is wrong; for a mistyped command or option the message names the most similar one.
 Invocation ParseCommandLine(const Program& program, int argc, const char* const* argv);
 
 }  // namespace loopgrid

@@ -11,7 +11,7 @@
 namespace loopgrid {
 namespace {
 
-// Wakes the watching thread when its work is over; sent to that thread alone.
+// Wakes the watching thread so that it ends. Sent to that thread only.
 constexpr int kWake = SIGUSR1;
 
 // Programs like timeout(1) send a signal to a process and to its group, so that it comes twice.
@@ -31,7 +31,7 @@ InterruptWatch::InterruptWatch(std::vector<std::function<void()>> handlers)
   for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (!IsIgnored(signal)) sigaddset(&watched_, signal);
   }
-  // Threads inherit the mask, so that these signals reach nobody but the watching thread.
+  // Threads inherit the mask, so only the watching thread receives these signals.
   pthread_sigmask(SIG_BLOCK, &watched_, &mask_before_);
   thread_ = std::thread([this] { Watch(); });
 }
@@ -58,7 +58,7 @@ int InterruptWatch::WaitForSignal() {
 void InterruptWatch::Watch() {
   for (const auto& handle : handlers_) {
     if (WaitForSignal() == 0) return;
-    // Nothing but _exit() ends the program from here on, so that this thread needs no end.
+    // From here on the program ends by _exit() only, so this thread need not be joined.
     if (&handle == &handlers_.back()) std::thread([this] { KillAtNextSignal(); }).detach();
     handle();
   }
@@ -66,7 +66,7 @@ void InterruptWatch::Watch() {
 }
 
 void InterruptWatch::KillAtNextSignal() {
-  // The destructor may be sending kWake just now, to the other thread. It has nothing to say here.
+  // kWake is for the other thread, so it is not waited for here.
   sigset_t signals = watched_;
   sigdelset(&signals, kWake);
   int signal = 0;
@@ -74,7 +74,7 @@ void InterruptWatch::KillAtNextSignal() {
     if (sigwait(&signals, &signal) != 0) return;
   } while (signal == last_signal_ && Clock::now() - last_arrival_ < kSameSignal);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-  raise(signal);  // which does now what it does to a program without a watch
+  raise(signal);  // the signal is not blocked any more, so it ends the program
 }
 
 }  // namespace loopgrid

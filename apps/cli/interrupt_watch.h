@@ -10,12 +10,13 @@
 
 namespace loopgrid {
 
-/// While one of these lives, SIGINT, SIGTERM and SIGHUP call the handlers on a thread of its own,
-/// whatever the rest of the program is busy with: the first signal the first handler, and so on.
-/// After the last one the program ends with 128 + the signal's number; a further signal while that
-/// one is at work kills at once. The same signal again within a second is the same one: it is
-/// ignored. Signals that whoever started the program ignores (nohup, background jobs) stay ignored.
-/// Make it before any other thread.
+/// Calls handlers when SIGINT, SIGTERM or SIGHUP arrives, as long as the object exists: the first
+/// signal calls the first handler, and so on. Handlers run on a thread of their own, also while the
+/// rest of the program is busy. After the last handler the program ends with the status 128 + the
+/// signal's number. A further signal while the last handler runs ends the program at once. The same
+/// signal within a second of the last one is ignored: some programs send it twice. Signals that are
+/// ignored when the program starts (nohup, background jobs) stay ignored. Has to be made before any
+/// other thread.
 class InterruptWatch {
  public:
   /// At least one handler.

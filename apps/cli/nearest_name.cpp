@@ -52,7 +52,7 @@ std::string NearestName(std::string_view word, const std::vector<std::string>& n
   std::size_t least = std::max<std::size_t>(letters.size() / 3, 1) + 1;
   for (const std::string& name : names) {
     const std::size_t distance = EditDistance(letters, WithoutDashes(name));
-    // A distance of the whole word would turn any one-letter word into any other.
+    // If all letters had to change, the names would not be similar.
     if (distance >= least || distance >= letters.size()) continue;
     least = distance;
     nearest = name;

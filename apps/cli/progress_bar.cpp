@@ -58,7 +58,7 @@ void ProgressBar::Update(double fraction, std::int64_t scans) {
   if (now < next_) return;
   next_ = now + kBetweenRedraws;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  // One column short of the edge, where some terminals wrap.
+  // The last column is not used, because some terminals would begin a new line.
   Draw(FormatProgress(fraction, scans, seconds, TerminalWidth() - 1));
 }
 

@@ -11,7 +11,7 @@ namespace loopgrid {
 /// if that is not known, and the bar is then left out.
 std::string FormatProgress(double fraction, std::int64_t scans, double seconds, int width);
 
-/// A progress bar on standard error, for people: silent if that is not a terminal.
+/// A progress bar on standard error. Shows nothing if that is not a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -19,10 +19,10 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Redraws the bar, but not more than ten times a second.
+  /// Redraws the bar, at most ten times a second.
   void Update(double fraction, std::int64_t scans);
 
-  /// Shows what the program is busy with after the last scan.
+  /// Shows what the program does after the last scan.
   void ShowStage(const std::string& stage);
 
   void Clear();

@@ -36,7 +36,7 @@ std::vector<std::string> OptionsOf(const Command& command) {
   return names;
 }
 
-/// Looks at the words after the command.
+/// Checks the words after the command.
 void RefuseUnknownOptions(const std::string& program, const Command& command,
                           std::span<const char* const> words) {
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid eval`, which sets `options` and acts on them.
+/// The command `loopgrid eval`. It sets `options` and then runs with them.
 Command DescribeEval(EvalOptions* options);
 
 }  // namespace loopgrid

@@ -21,7 +21,7 @@ namespace {
 
 bool IsForced(const EvalOptions& options) { return options.relations || options.trajectory; }
 
-/// Says which file is compared with which, and what the second one was taken for.
+/// Says which file is compared with which, and how the second one was read.
 std::string ComparisonLine(const EvalOptions& options, std::size_t poses, const char* kind,
                            std::size_t count, const char* unit) {
   return fmt::format("{:<13} {} ({} poses) with the {} {} ({} {}; {})\n", "compare",

@@ -4,12 +4,12 @@
 
 namespace loopgrid {
 
-/// What `loopgrid eval` is asked to do.
+/// Options of `loopgrid eval`.
 struct EvalOptions {
-  std::string estimate;     ///< trajectory to judge, TUM
-  std::string reference;    ///< relations, or a reference trajectory (TUM); told apart by content
-  bool relations = false;   ///< the reference holds relations, whatever it looks like
-  bool trajectory = false;  ///< the reference holds a trajectory, whatever it looks like
+  std::string estimate;     ///< trajectory to evaluate, TUM
+  std::string reference;    ///< relations, or a reference trajectory (TUM)
+  bool relations = false;   ///< read the reference as relations
+  bool trajectory = false;  ///< read the reference as a trajectory
   bool json = false;        ///< print JSON instead of text
 
   /// Throws Error (kUsage) if the options contradict each other.

@@ -18,7 +18,8 @@ namespace {
 
 void* LoadFromModule(const std::string& file, const std::string& function,
                      const std::string& purpose) {
-  // The dynamic linker looks where the program's RUNPATH says, and counts the users itself.
+  // The dynamic linker searches in the program's RUNPATH. It loads a library once, also if it is
+  // asked for several times.
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) FailToLoad(file, purpose);
   const auto* version = static_cast<const char*>(dlsym(module, "loopgrid_module_version"));

@@ -5,14 +5,14 @@
 
 namespace loopgrid {
 
-/// Decides which `Host` headers of HTTP requests a server answers to. A web page of another site
-/// can have its own name point to this machine and so read what the server tells (DNS rebinding).
-/// Its requests then carry that name in `Host`.
+/// Decides which `Host` headers of HTTP requests a server accepts. It protects against DNS
+/// rebinding: a web site can let its own name lead to this machine, so that its scripts can read
+/// the server's answers. The requests of such scripts have the site's name in `Host`.
 class HostCheck {
  public:
-  /// A server that only this machine reaches answers to `localhost`, to all loopback addresses, and
-  /// to `name`, the host that it was told to bind to. Any other server answers to every host: it
-  /// cannot know by which names other machines know it.
+  /// If the server is bound to a loopback address, it accepts `localhost`, all loopback addresses,
+  /// and `name`, the host that it was asked to bind to. Any other server accepts every host,
+  /// because it does not know the names that other machines use for it.
   HostCheck(bool is_loopback, std::string_view name);
 
   /// `host` is the value of the header: a name or an address, with or without a port.

@@ -14,7 +14,7 @@ struct HostPort {
 /// Reads `HOST:PORT`, an IPv6 address in brackets. Throws Error (kUsage) for anything else.
 HostPort ParseHostPort(std::string_view text);
 
-/// As ParseHostPort() reads it.
+/// The text that ParseHostPort() reads.
 std::string ToString(const HostPort& address);
 
 /// Whether a host is certainly this machine: `localhost` or a loopback address. Other names are not

@@ -9,7 +9,7 @@
 
 namespace loopgrid {
 
-/// The poses and landmarks of a graph, in the form in which mapping/ draws them.
+/// The poses and landmarks of a graph, in the form that mapping/ draws.
 template <typename Pose>
 GraphState StateOf(const PoseGraph<Pose>& graph, const std::string& title);
 
@@ -17,7 +17,7 @@ GraphState StateOf(const PoseGraph<Pose>& graph, const std::string& title);
 template <typename Pose>
 std::vector<GraphEdge> EdgesOf(const PoseGraph<Pose>& graph, const IdOrder& order);
 
-/// From above in 2D, oblique in 3D.
+/// The view: from above in 2D, oblique in 3D.
 template <typename Pose>
 constexpr Viewpoint ViewpointFor() {
   return Pose::kDof == 3 ? Viewpoint::kAbove : Viewpoint::kOblique;

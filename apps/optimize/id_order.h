@@ -5,12 +5,12 @@
 
 namespace loopgrid {
 
-/// The nodes of a graph in the order of their ids, which is that of the robot's way.
+/// The nodes of a graph in the order of their ids. The robot made them in this order.
 class IdOrder {
  public:
   explicit IdOrder(const std::vector<std::int64_t>& ids);
 
-  /// Whether no other id is between those of two nodes.
+  /// Whether one of two nodes follows the other in this order.
   bool AreConsecutive(int a, int b) const;
 
  private:

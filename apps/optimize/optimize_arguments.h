@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid optimize`, which sets `options` and acts on them.
+/// The command `loopgrid optimize`. It sets `options` and then runs with them.
 Command DescribeOptimize(OptimizeOptions* options);
 
 }  // namespace loopgrid

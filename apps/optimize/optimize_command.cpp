@@ -92,7 +92,7 @@ class Optimization {
   Optimizer<Pose> optimizer_;
   OptimizeReport* report_;
   PoseGraph<Pose> before_;  // only for a picture
-  int reference_ = -1;      // the node that covariances are relative to, if not to held ones
+  int reference_ = -1;      // the node that covariances are relative to; -1: the held ones
   std::vector<typename Marginals<Pose>::Covariance> covariances_;
   std::vector<typename Marginals<Pose>::PointCovariance> landmark_covariances_;
 };
@@ -172,8 +172,7 @@ void Optimization<Pose>::RequireProgress() const {
   }
 }
 
-/// Whether F is TotalChi2. Only of that can CertifyOptimality tell whether it is the global
-/// optimum.
+/// Whether F is TotalChi2. CertifyOptimality works only for that.
 template <typename Pose>
 bool Optimization<Pose>::IsSumOfSquares() const {
   return options_.parametrization == Parametrization::kManifold && report_->robust == 0;
@@ -247,7 +246,7 @@ void Run(const OptimizeOptions& options, GraphFile<Pose> file, OutputFiles* outp
          ProgressBar* bar, OptimizeReport* report) {
   Optimization<Pose> optimization(options, std::move(file), report);
   optimization.Prepare();
-  outputs->Open();  // fails now, not after a long optimisation, if one cannot be written
+  outputs->Open();  // if a file cannot be written, fail now and not after a long optimisation
 
   bar->ShowStage("optimising");
   const Stopwatch optimizing;

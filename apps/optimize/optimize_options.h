@@ -38,7 +38,7 @@ inline constexpr std::array kLosses = {
 inline constexpr std::array kRobustSets = {Choice{"closures", RobustSet::kClosures},
                                            Choice{"all", RobustSet::kAll}};
 
-/// What `loopgrid optimize` is asked to do. An output with an empty name is not written.
+/// Options of `loopgrid optimize`. An output with an empty name is not written.
 struct OptimizeOptions {
   std::string graph;                        ///< the graph to read: g2o or TORO, 2D or 3D
   std::string out;                          ///< the optimised graph, TORO or g2o by its name
@@ -53,21 +53,21 @@ struct OptimizeOptions {
   std::optional<double> loss_width;  ///< standard deviations
   std::optional<RobustSet> robust;
   int max_iterations = OptimizerOptions().max_iterations;
-  /// Share of F. Smaller than needed for the poses, so that F can be compared with published optima
+  /// Share of F. It is smaller than the poses need, so that F can be compared with published optima
   /// digit by digit.
   double tolerance = 1e-10;
   int threads = AllCores();
   bool lenient = false;  ///< as in GraphReadOptions
   bool json = false;     ///< print JSON instead of text
-  bool quiet = false;    ///< do not show what is going on
+  bool quiet = false;    ///< do not show progress
 
-  /// Throws Error (kUsage) naming what is wrong. Options of the library may go by their own names;
-  /// Execute() replaces those.
+  /// Throws Error (kUsage) naming what is wrong. Messages of the library name its own fields;
+  /// Execute() replaces them by the options.
   void Validate() const;
 
   OptimizerOptions Solver() const;
   RobustLoss Loss() const;
-  /// `init`, but with Euler angles kNone for kAuto: they are there to be compared with, from the
+  /// `init`; but kNone instead of kAuto with Euler angles. They are for comparison, which needs the
   /// same start.
   InitialGuess Start() const;
 

@@ -31,7 +31,7 @@ std::string InFull(InitialGuess start) {
   return "poses in the file";
 }
 
-/// Why the first start was that one.
+/// Why this start was the first one.
 std::string WhyStart(const OptimizeReport& report) {
   const InitialGuess asked = report.options.init;
   const InitialGuess first = report.trials.front().start;

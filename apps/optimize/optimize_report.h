@@ -13,7 +13,7 @@
 
 namespace loopgrid {
 
-/// What is reported about an optimisation, as plain values.
+/// The report about an optimisation, as plain values.
 struct OptimizeReport {
   OptimizeOptions options;
 
@@ -49,7 +49,7 @@ struct OptimizeReport {
   const OptimizerResult& result() const { return trials[best].result; }
 };
 
-/// Why there is no certificate, or what it says; one line.
+/// One line: what the certificate says, or why there is none.
 std::string ExplainOptimality(const OptimizeReport& report);
 
 /// JSON, for programs. Only members under the key "timings" may differ between two runs on the same

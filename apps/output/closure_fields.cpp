@@ -27,7 +27,7 @@ struct Field {
   std::string_view name;
   FieldValue (*value)(const Closure& closure);
   Format format = {};   // of a double
-  Format on_page = {};  // of a double that the page gets
+  Format on_page = {};  // of a double on the page
 };
 
 template <int kRow, int kColumn>
@@ -60,7 +60,7 @@ constexpr std::array<Field, 20> kFields = {{
     {"reason", [](const Closure& c) -> FieldValue { return Explain(c.outcome); }},
 }};
 
-// What each output has, in its order.
+// The fields of each output, in order.
 constexpr auto kCsvColumns = std::to_array<std::string_view>(
     {"from", "to", "time", "distance_sigmas", "score", "second_score", "denied_share", "x", "y",
      "theta", "cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "chi2", "outcome"});

@@ -7,9 +7,8 @@
 
 namespace loopgrid {
 
-// What is told about a closure that was tried. All of it comes from one table of fields, in
-// closure_fields.cpp: the columns of closures.csv and the members of the JSON objects of events and
-// of the page.
+// What is written about a closure that was tried: columns of closures.csv, and members of the JSON
+// objects of events and of the page. All come from one table of fields in closure_fields.cpp.
 
 /// The names of the columns of closures.csv, separated by commas.
 std::string ClosureCsvHeader();

@@ -7,8 +7,8 @@
 
 namespace loopgrid {
 
-/// The audit trail of loop closing as CSV text: a header, then one line a closure tried, in order.
-/// Metres, radians, seconds; x, y, theta and the covariance are those of T_from_to.
+/// All closures tried as CSV text: a header, then one line for each, in order. Metres, radians,
+/// seconds; x, y, theta and the covariance are those of T_from_to.
 std::string FormatClosuresCsv(const std::vector<Closure>& closures);
 
 }  // namespace loopgrid

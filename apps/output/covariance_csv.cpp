@@ -28,7 +28,7 @@ std::string ColumnName(int row, int column) {
   return fmt::format("cov_{}{}{}{}", part(row), kIsPlanar ? "" : "_", part(column), unit);
 }
 
-/// Of a matrix that may be smaller than the table is made for.
+/// For a matrix that may be smaller than that of a node.
 template <int kSize, typename Matrix>
 void AppendLine(std::int64_t id, const Matrix& covariance, std::string* text) {
   auto out = std::back_inserter(*text);

@@ -10,8 +10,8 @@
 namespace loopgrid {
 
 /// Covariances of nodes and landmarks as CSV text: a header that names the columns with their
-/// units, then a line each: its id and the upper triangle, row by row. Columns that a landmark has
-/// no number for are empty.
+/// units, then one line for each: its id and the upper triangle, row by row. Columns that a
+/// landmark does not have are empty.
 template <typename Pose>
 std::string FormatCovarianceCsv(
     const GraphIds& ids, const std::vector<typename Marginals<Pose>::Covariance>& of_nodes,

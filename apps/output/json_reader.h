@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// The members of a JSON object that are numbers, switches or texts; others are left out.
+/// The members of a JSON object that are numbers, booleans or texts. Other members are left out.
 class JsonMembers {
  public:
   /// Throws Error (kInput) `path: is damaged` if the file cannot be read or is not a JSON object.

@@ -78,7 +78,8 @@ JsonWriter& JsonWriter::End(char bracket) {
   return *this;
 }
 
-/// Separates what comes next from what is there.
+/// Writes what separates the next value from the one before: a comma and, if indented, a line
+/// break.
 void JsonWriter::BeginValue() {
   if (std::exchange(follows_key_, false)) return;
   if (!is_first_) text_ += ',';

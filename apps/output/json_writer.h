@@ -8,21 +8,21 @@
 
 namespace loopgrid {
 
-/// A number with so many digits after the decimal point.
+/// A number with a fixed number of digits after the decimal point.
 struct FixedNumber {
   double value;
   int decimals;
 };
 
-/// A number with so many significant digits.
+/// A number with a fixed number of significant digits.
 struct RoundedNumber {
   double value;
   int digits;
 };
 
-/// Writes JSON text piece by piece, keys in the order in which they come. Numbers without an own
-/// format have as many digits as it takes to read the same number again; NaN and infinities, which
-/// JSON does not have, are `null`. Bytes that are not UTF-8, as in names of files, become U+FFFD.
+/// Writes JSON text piece by piece; keys keep the order of the calls. Numbers without a format of
+/// their own have enough digits to be read back exactly. NaN and infinities, which JSON does not
+/// have, become `null`. Bytes that are not UTF-8, as in names of files, become U+FFFD.
 ///
 ///     JsonWriter json(JsonWriter::Layout::kOneLine);
 ///     json.BeginObject().Field("scans", 3).Key("map").BeginObject().Field("width", 20);
@@ -68,7 +68,7 @@ class JsonWriter {
     return EndArray();
   }
 
-  /// A value that is JSON text already, on one line.
+  /// A value that is already JSON text, on one line.
   JsonWriter& Raw(std::string_view json);
 
   /// A member of an object.
@@ -77,7 +77,7 @@ class JsonWriter {
     return Key(key).Value(value);
   }
 
-  /// The text so far; the writer is as new then.
+  /// Returns the text so far and empties the writer.
   std::string Take();
 
  private:

@@ -35,7 +35,7 @@ void KeptFile::PutBack() noexcept {
     unlink(place_.c_str());
     return;
   }
-  // Changes nothing, and leaves both names, if the file is still at its place.
+  // If the file is still at its place, rename() does nothing, and the second name is removed.
   if (rename(second_name_.c_str(), place_.c_str()) == 0) unlink(second_name_.c_str());
 }
 

@@ -4,19 +4,19 @@
 
 namespace loopgrid {
 
-/// What stands at a place before another file replaces it, kept under a second name so that it can
-/// be put back. Only one of PutBack() and Forget() may be called.
+/// Keeps a file under a second name before another file replaces it, so that it can be put back.
+/// Only one of PutBack() and Forget() may be called.
 class KeptFile {
  public:
-  /// Keeps the file at `place`, if there is one, as `second_name`, which is not taken and on the
-  /// same file system. The file stays at its place where the file system knows hard links, else it
-  /// is moved. Throws Error (kOutput) if the place is a folder, or the file cannot be kept.
+  /// Keeps the file at `place`, if there is one, as `second_name`, a free name on the same file
+  /// system. If the file system has hard links, the file also stays at its place; otherwise it is
+  /// moved. Throws Error (kOutput) if the place is a folder, or the file cannot be kept.
   KeptFile(std::filesystem::path place, std::filesystem::path second_name);
 
-  /// Leaves the place as it was, whatever is there now.
+  /// Restores the place to what it was.
   void PutBack() noexcept;
 
-  /// Removes the kept file: its successor is in place.
+  /// Removes the kept file. Call this when the new file is in place.
   void Forget() noexcept;
 
  private:

@@ -60,7 +60,7 @@ void OutputDirectory::CreateDirectories() {
   }
 }
 
-/// Nobody else is at work in the folder, so that what is unfinished will never be finished.
+/// Needs the lock: no other process is using the folder, so unfinished files in it are left over.
 void OutputDirectory::RemoveLeftovers() const {
   std::vector<std::string> ours = names_;
   ours.insert(ours.end(), {kJournalName, kSessionName});
@@ -142,7 +142,8 @@ void OutputDirectory::Discard() noexcept {
   const std::lock_guard lock(mutex_);
   if (std::exchange(done_, true)) return;
   std::error_code ignored;
-  // Somebody may be writing there just now: what a pass misses, the next one finds.
+  // Another thread may still be writing there, so a pass may miss files. Then the next one finds
+  // them.
   for (int pass = 0; pass < 10 && !staging_.empty() && fs::exists(staging_, ignored); ++pass) {
     fs::remove_all(staging_, ignored);
   }

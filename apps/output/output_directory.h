@@ -12,38 +12,39 @@
 
 namespace loopgrid {
 
-/// The folder that a run leaves its files in: all of them or none. Files are written to a hidden
-/// folder inside it and move to their places together, in Commit(). Without Commit() nothing stays
-/// behind, not even the folder itself if it was not there before. From Prepare() on the folder is
+/// The folder for the files of a run. Writes all files or none. Files are first written to a hidden
+/// folder inside it; Commit() moves them to their places together. Without Commit() no file is
+/// left, and the folder is removed if it did not exist before. From Prepare() on the folder is
 /// locked against other processes.
 class OutputDirectory {
  public:
-  /// For the files `names` in `directory`. Touches nothing yet.
+  /// For the files `names` in `directory`. Writes nothing yet.
   OutputDirectory(const std::string& directory, std::vector<std::string> names);
   ~OutputDirectory();
   OutputDirectory(const OutputDirectory&) = delete;
   OutputDirectory& operator=(const OutputDirectory&) = delete;
 
-  /// Makes the folder (and its parents) where missing, removes what a killed process has left
-  /// unfinished in it, and finds out whether the files can be made. Throws Error (kOutput) if not,
-  /// or if another process uses the folder.
+  /// Makes the folder and its parents if they do not exist, removes unfinished files of a killed
+  /// process, and checks that the files can be written. Throws Error (kOutput) if they cannot, or
+  /// if another process uses the folder.
   void Prepare();
 
-  /// Calls `write` with the path to write the file `name` to for now. Errors name its final place.
+  /// Calls `write` with the path where the file `name` has to be written for now. Errors name its
+  /// final place.
   void Write(const std::string& name, const std::function<void(const std::string& path)>& write);
 
   /// The same for a file that is ready in memory.
   void Write(const std::string& name, std::string_view content);
 
-  /// The file `name` is not made this time. One that an earlier run left goes with Commit().
+  /// The file `name` is not written this time. Commit() removes that of an earlier run.
   void LeaveOut(const std::string& name);
 
   /// Moves every file to its place. Throws Error (kOutput) if one is missing or cannot be moved;
   /// the folder then holds what it held before.
   void Commit();
 
-  /// Removes what is not committed. Any thread may call it, also during Prepare() or Commit(),
-  /// which then come first. Nothing can be written afterwards.
+  /// Removes files that are not committed. Any thread may call it. If Prepare() or Commit() is
+  /// running, it waits for them. Nothing can be written afterwards.
   void Discard() noexcept;
 
  private:

@@ -32,7 +32,7 @@ bool IsReplaced(const std::string& path) {
   return !std::filesystem::is_other(path, ignored);
 }
 
-/// Keeps what the path means, links followed.
+/// Keeps the file that the path leads to, following links.
 KeptFile Keep(const std::string& path) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::canonical(path, error);

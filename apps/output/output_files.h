@@ -10,11 +10,11 @@
 
 namespace loopgrid {
 
-/// Files that a command leaves in places of their own: all of them or none (see AtomicFile; devices
-/// and pipes are written directly). OutputDirectory is the same for files that share a folder.
+/// Files of a command at any places. Writes all of them or none (see AtomicFile). Devices and pipes
+/// are written directly. For files in one folder see OutputDirectory.
 class OutputFiles {
  public:
-  /// Touches nothing yet. Throws Error (kUsage) if two paths mean the same file.
+  /// Writes nothing yet. Throws Error (kUsage) if two paths mean the same file.
   explicit OutputFiles(std::vector<std::string> paths);
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
@@ -22,19 +22,19 @@ class OutputFiles {
 
   const std::vector<std::string>& paths() const { return paths_; }
 
-  /// Finds out whether all of them can be written. Throws Error (kOutput) if not.
+  /// Checks that all files can be written. Throws Error (kOutput) if not.
   void Open();
 
-  /// The content of one of the files; nothing is to be seen of it before Commit(). Throws Error
+  /// Sets the content of one of the files. It is not visible before Commit(). Throws Error
   /// (kOutput).
   void Write(const std::string& path, std::string_view content);
 
-  /// Gives all files their names. Throws Error (kOutput) if one cannot be written in full, and then
-  /// there is none, and what stood in their places is there again.
+  /// Moves all files to their places. Throws Error (kOutput) if one cannot be written completely.
+  /// Then none is written, and the older files are at their places again.
   void Commit();
 
-  /// Removes what is not committed. Any thread may call it, also during Open() or Commit(), which
-  /// then come first; the process must end afterwards.
+  /// Removes files that are not committed. Any thread may call it. If Open() or Commit() is
+  /// running, it waits for them. The process must end afterwards.
   void Discard() noexcept;
 
  private:

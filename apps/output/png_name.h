@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// Throws Error (kUsage) if the name of a picture, given with `option`, promises something else
-/// than PNG.
+/// Throws Error (kUsage) if the name of a picture, given with `option`, has the ending of another
+/// format than PNG.
 void RequirePngName(const std::string& option, const std::string& path);
 
 }  // namespace loopgrid

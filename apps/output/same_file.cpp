@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path with links followed as far as it exists.
+/// The path with links followed, as far as it exists.
 fs::path PlaceOf(const std::string& path) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(path, error);

@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// Whether two paths mean the same file: the same one by whatever name, or, if one is not there
-/// (yet), the same place. Devices and pipes are no files in this sense: false. Throws nothing.
+/// Whether two paths lead to the same file, by any name. If one of them does not exist yet, whether
+/// they are the same place. False for devices and pipes. Throws nothing.
 bool IsSameFile(const std::string& a, const std::string& b);
 
 /// Throws Error (kUsage) if a command would write `output`, given with `option`, over its own

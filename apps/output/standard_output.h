@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// Prints to standard output and makes sure that it got there. Throws Error (kOutput) if not: the
-/// disk is full, the pipe closed.
+/// Prints to standard output. Throws Error (kOutput) if that fails, for example because the disk is
+/// full or the pipe is closed.
 void PrintToStandardOutput(const std::string& text);
 
 }  // namespace loopgrid

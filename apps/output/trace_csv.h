@@ -8,13 +8,12 @@
 
 namespace loopgrid {
 
-/// The state after every step of an optimisation as CSV text: a header, then one line a step,
-/// beginning with the start: iteration,F,chi2,damping,step,seconds (see IterationRecord).
+/// The state after every step of an optimisation as CSV text: a header, then one line for the start
+/// and one for each step: iteration,F,chi2,damping,step,seconds (see IterationRecord).
 std::string FormatTraceCsv(const std::vector<IterationRecord>& trace);
 
-/// (iteration, F) of every line of such a file; the columns are found by their names, others may be
-/// missing. F may be inf or nan. Throws Error (kInput), where there is a line beginning
-/// `file:line: `.
+/// (iteration, F) of every line of such a file. The columns are found by their names; other columns
+/// may be missing. F may be inf or nan. Throws Error (kInput) `file:line: ...`.
 std::vector<Eigen::Vector2d> ReadTraceCsv(const std::string& path);
 
 }  // namespace loopgrid

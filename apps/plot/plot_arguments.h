@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid plot`, which sets `options` and acts on them.
+/// The command `loopgrid plot`. It sets `options` and then runs with them.
 Command DescribePlot(PlotOptions* options);
 
 }  // namespace loopgrid

@@ -5,13 +5,13 @@
 
 namespace loopgrid {
 
-/// What `loopgrid plot` is asked to do.
+/// Options of `loopgrid plot`.
 struct PlotOptions {
   std::vector<std::string> traces;  ///< CSV, as `loopgrid optimize --trace` writes them
   std::string out;                  ///< the PNG to write
 };
 
-/// Draws F(x) over the iterations, one curve a trace, into one picture. Throws Error.
+/// Draws F over the iterations into one picture, with one curve for each trace. Throws Error.
 void PlotCommand(const PlotOptions& options);
 
 }  // namespace loopgrid

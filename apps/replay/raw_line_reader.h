@@ -10,15 +10,15 @@
 
 namespace loopgrid {
 
-/// The lines of a file with their ends, byte for byte: joined they are the file.
+/// Reads the lines of a file with their line ends. All pieces together are the file, byte for byte.
 class RawLineReader {
  public:
   explicit RawLineReader(InputFile file,
                          std::size_t longest_piece = LineReader::kMaxLineLength + 2);
 
-  /// The next line with its end, if it has one, valid until the next call; false at the end of the
-  /// file. A line that is longer than a piece comes in several. Throws Error (kInput) if the
-  /// file cannot be read further.
+  /// The next line with its end, if it has one; false at the end of the file. A long line comes in
+  /// several pieces. `piece` is valid until the next call. Throws Error (kInput) if the file cannot
+  /// be read further.
   bool Next(std::string_view* piece);
 
   /// Whether the last piece is a whole line with its end.
@@ -36,7 +36,7 @@ class RawLineReader {
   InputFile file_;
   std::size_t longest_piece_;
   std::string buffer_;
-  std::size_t begin_ = 0;  // of what is read but not yet given out
+  std::size_t begin_ = 0;  // of what is read but not yet returned
   std::int64_t line_number_ = 0;
   bool begins_line_ = true;
   bool ends_line_ = true;

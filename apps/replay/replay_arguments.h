@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid replay`, which sets `options` and acts on them.
+/// The command `loopgrid replay`. It sets `options` and then runs with them.
 Command DescribeReplay(ReplayOptions* options);
 
 }  // namespace loopgrid

@@ -41,7 +41,8 @@ std::optional<double> TimeOfScan(std::string_view line) {
   return message.timestamp;
 }
 
-/// A log that is played without end has to have a scan: nothing else in it takes time.
+/// A log that is played without end has to have a scan: without time stamps the loop would never
+/// wait.
 void RequireScan(const ReplayOptions& options) {
   RawLineReader lines = OpenLines(options.log);
   std::string_view piece;
@@ -60,14 +61,13 @@ class Player {
   Player(const ReplayOptions& options, const ReplayOutput* output)
       : options_(options), output_(output), schedule_(options.speed) {}
 
-  /// Plays the log once; between two rounds there is a line end even if the log has none.
+  /// Plays the log once. If the log has no line end at its end, writes one before the next round.
   void Play(RawLineReader* lines);
 
-  /// Writes what has been held back until now.
+  /// Writes the lines that wait to be written together.
   void Flush();
 
-  /// Nothing is written any more. Waits for the line that is being written, unless the receiver
-  /// does not take it.
+  /// Stops writing. Waits up to a second until the line being written is complete.
   void Stop() { static_cast<void>(writing_.try_lock_for(std::chrono::seconds(1))); }
 
  private:
@@ -90,7 +90,7 @@ void Player::Play(RawLineReader* lines) {
     try {
       return lines->Next(&piece);
     } catch (const Error&) {
-      Flush();  // the log broke off: what comes before is good
+      Flush();  // the log is damaged here; the lines before are good
       throw;
     }
   };

@@ -10,7 +10,7 @@ namespace loopgrid {
 void ReplayOptions::Validate() const {
   constexpr double kSlowest = 1e-6;
   constexpr double kFastest = 1e6;
-  // Written so that NaN does not pass.
+  // This form of the test also refuses NaN.
   if (speed != 0.0 && !(speed >= kSlowest && speed <= kFastest)) {
     throw Error(ErrorCode::kUsage,
                 fmt::format("--speed is {}, expected 0 or {} to {}", speed, kSlowest, kFastest));

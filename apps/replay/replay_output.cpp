@@ -27,7 +27,7 @@ Descriptor ConnectTo(const HostPort& address) {
   const auto endpoints = tcp::resolver(io).resolve(address.host, std::to_string(address.port),
                                                    tcp::resolver::numeric_service, error);
   if (!error) asio::connect(socket, endpoints, error);
-  // A line must not wait for the acknowledgement of the one before.
+  // Without this option a line could wait until the line before is acknowledged.
   if (!error) socket.set_option(tcp::no_delay(true), error);
   Descriptor descriptor;
   if (!error) descriptor = Descriptor(socket.release(error));

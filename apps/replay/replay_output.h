@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// Where a log is played to. Whatever goes wrong is an Error (kOutput).
+/// The receiver of a log that is played. Every failure is an Error (kOutput).
 class ReplayOutput {
  public:
   /// Standard output.
@@ -17,11 +17,11 @@ class ReplayOutput {
   /// A TCP connection to that address.
   explicit ReplayOutput(const HostPort& address);
 
-  /// Waits until the other side, or the system for it, has taken all of it.
+  /// Waits until the receiver, or the system's buffer, has taken all bytes.
   void Write(std::string_view bytes) const;
 
-  /// Tells the other side of a connection that nothing more comes, and waits until it has closed
-  /// the connection too: only then it is certain that it has not refused the bytes.
+  /// Closes this side of a connection and waits until the receiver has closed the other side. Only
+  /// then is it certain that the receiver has not refused the bytes.
   void Finish() const;
 
  private:

@@ -10,13 +10,12 @@
 
 namespace loopgrid {
 
-/// Throws Error (kInput) if there was no scan in what came from `name`.
+/// Throws Error (kInput) if the log `name` has no scan.
 void RequireScans(const std::string& name, const LogStatistics& log);
 
-/// The end of every run, whether its scans stood in a file or came while the robot drove: settles
-/// the graph, completes `report` and leaves all files. `report` holds the options and what is known
-/// of the log; `stopwatch` runs since the beginning. The report's notes go to standard error.
-/// Throws Error.
+/// Ends a run of `loopgrid run` or `loopgrid online`: optimises the graph, completes `report` and
+/// writes all files. Before the call `report` has the options and the counts of the log;
+/// `stopwatch` runs since the beginning. The report's notes go to standard error. Throws Error.
 void FinishRun(const Stopwatch& stopwatch, Slam* slam, OutputDirectory* outputs, ProgressBar* bar,
                RunReport* report);
 

@@ -11,14 +11,14 @@
 
 namespace loopgrid {
 
-/// Everything that a run tells about itself, as plain values.
+/// Everything that a run reports, as plain values.
 struct RunReport {
   RunOptions options;
   LogStatistics log;
   SlamStatistics slam;
   int nodes = 0;
   int constraints = 0;
-  std::map<std::string, std::int64_t> closures;  ///< how many tried came to which outcome
+  std::map<std::string, std::int64_t> closures;  ///< number of closures with each outcome
   int map_width = 0;                             ///< cells; 0 if there is no map
   int map_height = 0;                            ///< cells
   double map_resolution = 0.0;                   ///< side of a cell, metres
@@ -31,8 +31,8 @@ struct RunReport {
   std::vector<std::string> notes;  ///< what is missing in the pictures, and why
 };
 
-/// Seconds of recording behind a row of time stamps that may run backwards and jump: steps of over
-/// a minute are taken for a clock that was set, not for time that passed.
+/// Adds up the seconds of a recording from its time stamps, which may run backwards and jump. Steps
+/// of over a minute are not counted: the clock was set.
 class RecordingClock {
  public:
   void Add(double timestamp);

@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid run`, which sets `options` and acts on them.
+/// The command `loopgrid run`. It sets `options` and then runs with them.
 Command DescribeRun(RunOptions* options);
 
 }  // namespace loopgrid

@@ -21,14 +21,14 @@
 namespace loopgrid {
 namespace {
 
-/// The log is read twice: to map it, then to correct it. A pipe would not last.
+/// The log is read twice: to map it, then to correct it. A pipe can be read only once.
 void RequireFile(const std::string& log) {
   std::error_code ignored;
   if (!std::filesystem::is_other(log, ignored)) return;
   throw Error(ErrorCode::kInput, log + ": is a device or a pipe; a log has to be a file");
 }
 
-/// Neither a session of `loopgrid online` nor the log itself may be in the place of the files.
+/// The files must not replace a session of `loopgrid online` or the log itself.
 void RequireFreePlaces(const RunOptions& options) {
   std::error_code ignored;
   for (const char* name : {kSessionName, kJournalName}) {
@@ -70,8 +70,8 @@ void RunCommand(const RunOptions& options) {
   log_options.strict = options.strict;
   const auto log = OpenLog(options.log, log_options);
 
-  // Found out now, not after a long run. The watch comes in between, so that there is no moment
-  // at which an interrupt would leave something behind.
+  // Fail now and not after a long run. The watch is made before Prepare(), so that an interrupt
+  // never leaves unfinished files.
   RequireFreePlaces(options);
   OutputDirectory outputs(options.out, RunOutputNames());
   const InterruptWatch watch([&outputs] { outputs.Discard(); });

@@ -35,7 +35,7 @@ ScanAt ScansOf(const Slam& slam) {
   };
 }
 
-/// Where odometry alone would have put the scans, with the first one where it is on the map.
+/// The poses of the scans by odometry alone. The first one is that on the map.
 std::vector<SE2> OdometryPoses(const Slam& slam, const std::vector<SE2>& poses) {
   std::vector<SE2> odometry;
   odometry.reserve(poses.size());
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> PositionsOf(const std::vector<SE2>& nodes) {
 }
 
 std::vector<GraphEdge> EdgesOf(const PoseGraph<SE2>& graph) {
-  // Nodes that are no further apart than this in the order of the log met on the way, not again.
+  // Constraints between nodes at most this far apart in the order of the log are not closures.
   constexpr int kOnTheWay = 10;
   std::vector<GraphEdge> edges;
   for (const Constraint<SE2>& constraint : graph.constraints) {
@@ -71,7 +71,7 @@ std::vector<GraphEdge> EdgesOf(const PoseGraph<SE2>& graph) {
   return edges;
 }
 
-/// What there is to say about a map that was to have cells of `resolution` metres.
+/// Notes about what differs from a map of all scans with cells of `resolution` metres.
 std::vector<std::string> NotesAbout(const FittedMap& map, double resolution) {
   std::vector<std::string> notes;
   if (map.grid.resolution() > resolution) {
@@ -122,8 +122,9 @@ std::string DrawGraphOutput(const Slam& slam, const std::vector<SE2>& odometry,
   return DrawGraphBeforeAfter(before, after, EdgesOf(slam.graph()));
 }
 
-/// Calls `draw`. If it fails, whatever the reason (a picture that does not fit into the memory,
-/// say), a note says that `what` is left out: no picture is worth the trajectory and the graph.
+/// Calls `draw`. If it fails for any reason, for example because the picture does not fit into
+/// memory, adds a note that `what` is left out. Trajectory and graph must be written also without a
+/// picture.
 template <typename Draw>
 auto DrawOrLeaveOut(const char* what, const Draw& draw, RunReport* report)
     -> std::optional<decltype(draw())> {

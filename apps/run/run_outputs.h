@@ -11,15 +11,14 @@
 
 namespace loopgrid {
 
-/// The names of all files that a run leaves.
+/// The names of all files that a run writes.
 std::vector<std::string> RunOutputNames();
 
 /// The poses of a run's scans with their times.
 Trajectory StampPoses(const Slam& slam, const std::vector<SE2>& poses);
 
-/// Writes the files, all but report.json, and notes in `report` what there is to tell about them.
-/// A picture or a map that is too large to be drawn is drawn coarser or left out, with a note in
-/// the report. Throws Error.
+/// Writes all files except report.json, and completes `report`. A picture or a map that is too
+/// large is drawn coarser or left out, with a note in the report. Throws Error.
 void WriteRunOutputs(const RunOptions& options, const Slam& slam, OutputDirectory* outputs,
                      RunReport* report);
 

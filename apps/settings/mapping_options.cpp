@@ -82,7 +82,7 @@ void ValidateMapping(RunOptions options) {
   for (const MappingOption& option : kOptions) {
     if (option.number == nullptr) continue;
     const double value = option.number(options);
-    // Written so that NaN does not pass.
+    // This form of the test also refuses NaN.
     if (value >= option.least && value <= option.most) continue;
     throw Error(ErrorCode::kUsage, fmt::format("{} is {}, expected {} to {}", option.name, value,
                                                option.least, option.most));

@@ -11,13 +11,12 @@
 
 namespace loopgrid {
 
-/// An option that decides what map comes out. The table of these is what the command line, its
-/// help, the checks, report.json, session.json and the events know them by. Exactly one of `number`
-/// and `flag` is set.
+/// An option that changes the map. One table of them is used for the command line, its help, the
+/// checks, report.json, session.json and the events. Exactly one of `number` and `flag` is set.
 struct MappingOption {
   const char* name;  ///< on the command line
   const char* key;   ///< in files, as JSON
-  const char* unit;  ///< what the help calls its value
+  const char* unit;  ///< name of its value in the help
   const char* help;  ///< for a number "{}" and "{}" stand for its bounds
   double least = 0.0;
   double most = 0.0;

@@ -6,10 +6,10 @@
 
 namespace loopgrid {
 
-/// What `loopgrid run` is asked to do.
+/// Options of `loopgrid run`.
 struct RunOptions {
   std::string log;           ///< the log to read
-  std::string out;           ///< the folder to leave the files in
+  std::string out;           ///< the folder for the files
   double resolution = 0.05;  ///< side of a map cell, metres
   bool strict = false;       ///< stop at the first malformed line
   bool quiet = false;        ///< no progress bar
