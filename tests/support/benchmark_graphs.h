@@ -14,8 +14,8 @@ namespace loopgrid::test_support {
 
 using AnyGraph = std::variant<PoseGraph<SE2>, PoseGraph<SE3>>;
 
-/// What benchmarks of the back-end run on: a generated city and, where LOOPGRID_DATA names the
-/// folder that has them in graphs/, public benchmark graphs.
+/// The graphs for benchmarks of the back-end: a generated city, and the public benchmark graphs in
+/// the folder graphs/ of LOOPGRID_DATA, if it is set.
 inline std::vector<std::string> BenchmarkGraphNames() {
   std::vector<std::string> names = {"city1700"};
   const char* folder = std::getenv("LOOPGRID_DATA");
@@ -28,7 +28,7 @@ inline std::vector<std::string> BenchmarkGraphNames() {
   return names;
 }
 
-/// One of those; `city` with a number is a generated one of so many nodes.
+/// One of those graphs; `city` with a number is a generated city with that number of nodes.
 inline AnyGraph BenchmarkGraph(const std::string& name) {
   if (name.starts_with("city") && name.find('.') == std::string::npos) {
     return ManhattanWorld(std::stoi(name.substr(4)), 4, 1);

@@ -9,7 +9,7 @@
 
 namespace loopgrid::test_support {
 
-/// The whole of a block matrix, dense.
+/// A block matrix as a dense matrix.
 template <int kDim>
 Eigen::MatrixXd Dense(const SymmetricBlockMatrix<kDim>& H) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kDim * H.cols(), kDim * H.cols());
@@ -25,7 +25,7 @@ Eigen::MatrixXd Dense(const SymmetricBlockMatrix<kDim>& H) {
   return dense;
 }
 
-/// Makes the values of a matrix random, and positive definite by making the diagonal dominate.
+/// Sets random values. The diagonal dominates, so the matrix is positive definite.
 template <int kDim>
 void Randomize(std::mt19937* random, SymmetricBlockMatrix<kDim>* H) {
   std::uniform_real_distribution<double> value(-1.0, 1.0);

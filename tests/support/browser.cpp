@@ -30,7 +30,8 @@ bool IsInPath(const std::string& program) {
   return false;
 }
 
-// Starts chromedriver as the head of a process group; `output` is where to read what it prints.
+// Starts chromedriver as the leader of a process group. `output` is the end of a pipe to read its
+// output from.
 pid_t StartDriver(int* output) {
   std::array<int, 2> pipe_ends = {};
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
@@ -49,15 +50,15 @@ pid_t StartDriver(int* output) {
   return child;
 }
 
-// Starts a process that kills a process group once nobody has the other end of `life` open: at the
-// latest when this process has ended, whatever ended it.
+// Starts a process that kills a process group when the other end of the pipe `life` is closed. That
+// happens at the latest when this process ends, also if it is killed.
 pid_t StartGuardian(pid_t group, int* life) {
   std::array<int, 2> pipe_ends = {};
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("cannot fork");
   if (child == 0) {
-    setpgid(0, 0);  // a signal to the group of the tests, as by Ctrl-C, is not for it
+    setpgid(0, 0);  // so that it does not get signals to the group of the tests, such as Ctrl-C
     const int nowhere = open("/dev/null", O_RDWR);
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
     close(pipe_ends[1]);
@@ -126,7 +127,7 @@ Browser::Browser() {
   int output = -1;
   driver_ = StartDriver(&output);
   guardian_ = StartGuardian(driver_, &life_);
-  client_ = std::make_unique<HttpClient>(ReadPort(output));  // the pipe stays open for what follows
+  client_ = std::make_unique<HttpClient>(ReadPort(output));  // the pipe stays open for later output
   const json session = Call("POST", "/session", Capabilities(profile_.path().string()));
   session_ = session.at("sessionId").get<std::string>();
 }
@@ -134,7 +135,7 @@ Browser::Browser() {
 Browser::~Browser() {
   try {
     CallSession("DELETE", "");
-  } catch (const std::exception&) {  // it is ended all the same
+  } catch (const std::exception&) {  // the destructor goes on and ends it anyway
   }
   close(life_);
   waitpid(guardian_, nullptr, 0);

@@ -13,11 +13,11 @@
 
 namespace loopgrid::test_support {
 
-/// Headless Chromium with a profile of its own, steered through chromedriver by the WebDriver
-/// protocol (W3C). What goes wrong throws std::runtime_error.
+/// Headless Chromium with a profile of its own, controlled through chromedriver by the WebDriver
+/// protocol (W3C). Failures throw std::runtime_error.
 class Browser {
  public:
-  /// Whether chromium and chromedriver are there.
+  /// Whether chromium and chromedriver are installed.
   static bool IsInstalled();
 
   Browser();
@@ -27,7 +27,7 @@ class Browser {
 
   void Open(const std::string& url);
 
-  /// Runs the body of a function in the page; what it returns.
+  /// Runs the body of a function in the page. Returns its result.
   nlohmann::json Run(const std::string& script);
 
   /// Waits until an expression of the page is true; false if it is not within a minute.
@@ -39,16 +39,17 @@ class Browser {
   /// Clicks in the middle of the element that a CSS selector finds.
   void Click(const std::string& selector);
 
-  /// Size of the page in CSS pixels; as a phone it has twice as many real ones, and touch.
+  /// Sets the size of the page in CSS pixels. As a phone it has two device pixels for each of them,
+  /// and touch.
   void Resize(int width, int height, bool as_phone = false);
   void PreferDark(bool dark);
 
   void SaveScreenshot(const std::string& path);
 
-  /// What the page has complained of on its console since the last call.
+  /// Messages on the page's console since the last call.
   std::vector<std::string> TakeComplaints();
 
-  /// Hosts (with ports) that the page has asked for anything since the last call.
+  /// Hosts (with ports) to which the page has sent requests since the last call.
   std::set<std::string> TakeHosts();
 
  private:
@@ -62,7 +63,7 @@ class Browser {
   TemporaryDirectory profile_;
   pid_t driver_ = -1;
   pid_t guardian_ = -1;  // ends the driver and the browser when this process is gone
-  int life_ = -1;        // what the guardian watches: closed here, or with this process
+  int life_ = -1;  // the pipe that the guardian watches; closed by us, or when this process ends
   std::unique_ptr<HttpClient> client_;
   std::string session_;
 };

@@ -6,10 +6,10 @@
 
 namespace loopgrid::test_support {
 
-/// Which message carries the scans in a CARMEN log.
+/// The message that has the scans in a CARMEN log.
 enum class CarmenDialect {
   kFlaser,       ///< old: poses of laser and robot, no angles
-  kRobotLaser1,  ///< new: angles, maximum range and the like too
+  kRobotLaser1,  ///< new: also angles, maximum range and more
 };
 
 /// The run as the text of a CARMEN log: PARAM lines, then an ODOM line and the scan of each

@@ -48,7 +48,7 @@ TEST(CarmenText, ReadsBackInBothDialects) {
 TEST(SimulatedLog, IsWhatTheProgramMakes) {
   const std::string logs = LOOPGRID_SOURCE_DIR "/logs/";
   const SimulatedRun run = OfficeRun();
-  // No EXPECT_EQ: a difference would print a megabyte.
+  // EXPECT_EQ would print a megabyte if they differ.
   EXPECT_TRUE(ReadAll(logs + "simulated-office.clf.gz") == CarmenText(run, CarmenDialect::kFlaser));
   EXPECT_TRUE(ReadAll(logs + "simulated-office.tum") == TrueTrajectoryText(run));
 }

@@ -12,7 +12,7 @@
 namespace loopgrid::test_support {
 namespace {
 
-// What Ceres keeps of a pose.
+// A pose in the form that Ceres stores.
 template <typename Pose>
 struct Ambient;
 
@@ -42,8 +42,8 @@ struct Ambient<SE3> {
 template <typename Pose>
 using AmbientJacobian = Eigen::Matrix<double, Pose::kDof, Ambient<Pose>::kSize, Eigen::RowMajor>;
 
-/// Ceres multiplies the Jacobians of residuals by that of Plus. Ours are for local motions
-/// already: they go into the first columns, and Plus passes those on.
+/// Ceres multiplies the Jacobians of residuals by that of Plus. Our Jacobians are already for local
+/// motions: they are in the first columns, and the Jacobian of Plus selects those columns.
 template <typename Pose>
 class PoseManifold : public ceres::Manifold {
  public:

@@ -80,7 +80,8 @@ class CholmodSolver<kDim>::Impl {
     cholmod_free_sparse(&matrix_, &common_);
   }
 
-  // The upper triangle by scalar columns; remembers where each block's columns begin.
+  // Builds the upper triangle by scalar columns, and the places where the columns of each block
+  // begin.
   void BuildPattern(const SymmetricBlockMatrix<kDim>& H) {
     const int n = H.cols();
     std::vector<std::vector<int>> blocks_of_column(static_cast<std::size_t>(n));

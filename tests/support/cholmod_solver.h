@@ -7,8 +7,9 @@
 
 namespace loopgrid::test_support {
 
-/// What SparseCholesky is compared with: CHOLMOD's simplicial factorisation (faster than its
-/// supernodal one on the graphs of planar SLAM), ordered by minimum degree on the blocks.
+/// The solver that SparseCholesky is compared with: CHOLMOD's simplicial factorisation, ordered by
+/// minimum degree on the blocks. On graphs of planar SLAM it is faster than CHOLMOD's supernodal
+/// factorisation.
 template <int kDim>
 class CholmodSolver {
  public:

@@ -2,8 +2,9 @@
 
 namespace loopgrid::test_support {
 
-/// How much of a repeated computation a test does: `full` in a normal build, `sanitized` under a
-/// sanitizer, which makes it about ten times slower and sees a defect in the first few rounds.
+/// How many rounds of a repeated computation a test does: `full` in a normal build, `sanitized`
+/// under a sanitizer. A sanitizer is about ten times slower and finds a defect in the first few
+/// rounds.
 template <typename T>
 constexpr T Effort(T full, [[maybe_unused]] T sanitized) {
 #ifdef LOOPGRID_SANITIZED

@@ -45,7 +45,8 @@ void ExpectMarginalsOf(const PoseGraph<Pose>& graph,
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [i, j] = pairs[k];
     const Covariance expected = inverse.block<kDof, kDof>(kDof * i, kDof * j);
-    // Distant nodes have little in common: what counts is how uncertain both are.
+    // The covariance of distant nodes is small, so the tolerance is relative to their own
+    // covariances.
     const double scale = std::sqrt(inverse.block<kDof, kDof>(kDof * i, kDof * i).norm() *
                                    inverse.block<kDof, kDof>(kDof * j, kDof * j).norm());
     EXPECT_LE((of_pairs[k] - expected).norm(), tolerance * scale) << i << " with " << j;

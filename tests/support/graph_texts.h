@@ -21,7 +21,8 @@ GraphFile<Pose> ReadGraphText(const std::string& text, GraphNotes* notes = nullp
   return ReadGraphOf<Pose>(MemoryFile(text).path(), {.lenient = lenient}, notes);
 }
 
-/// The message with which a text is refused, without the name of the file; empty if it is not.
+/// The message of the error when a text is read, without the name of the file; empty if there is
+/// none.
 inline std::string Refusal(const std::string& text) {
   const MemoryFile file(text);
   try {

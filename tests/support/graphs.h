@@ -24,7 +24,7 @@ Eigen::Matrix<double, kSize, kSize> RandomInformation(std::mt19937* random) {
   return 50.0 * (root * root.transpose() + 0.1 * Matrix::Identity());
 }
 
-/// Noise of a fifth of what the information says.
+/// Noise with a fifth of the standard deviations of the information matrix.
 template <int kSize>
 Eigen::Matrix<double, kSize, 1> RandomNoise(const Eigen::Matrix<double, kSize, kSize>& information,
                                             std::mt19937* random) {
@@ -48,7 +48,7 @@ Constraint<Pose> NoisyConstraint(const std::vector<Pose>& truth, int from, int t
   return constraint;
 }
 
-/// Adds landmarks near the robot's way, each seen from one to four nodes.
+/// Adds landmarks near the robot's path, each seen from one to four nodes.
 template <typename Pose>
 void AddLandmarks(const std::vector<Pose>& truth, int landmarks, std::mt19937* random,
                   PoseGraph<Pose>* graph) {
@@ -70,8 +70,8 @@ void AddLandmarks(const std::vector<Pose>& truth, int landmarks, std::mt19937* r
   }
 }
 
-/// A robot wanders about: `nodes` nodes in sequence, `closures` more constraints between any two of
-/// them, landmarks on the way, poses from the sequence alone.
+/// A random walk: `nodes` nodes in sequence, `closures` more constraints between random nodes, and
+/// landmarks beside the path. The poses follow from the sequence alone.
 template <typename Pose = SE2>
 PoseGraph<Pose> RandomGraph(int nodes, int closures, unsigned seed, int landmarks = 0) {
   std::mt19937 random(seed);
@@ -119,9 +119,9 @@ PoseGraph<Pose> Union(const PoseGraph<Pose>& a, const PoseGraph<Pose>& b) {
   return both;
 }
 
-/// Appends the next node of `whole` to the beginning of it that `graph` is, with what joins it to
-/// nodes that are there, and with the landmarks up to the last that it sees: some of them may not
-/// have been seen yet.
+/// `graph` is the beginning of `whole`. Appends the next node of `whole`, its constraints to nodes
+/// in `graph`, and the landmarks up to the last one that it sees. Some of these may be without an
+/// observation so far.
 template <typename Pose>
 void AppendNextNode(const PoseGraph<Pose>& whole, PoseGraph<Pose>* graph) {
   const int node = static_cast<int>(graph->poses.size());
@@ -161,7 +161,7 @@ struct DenseEquations {
   Eigen::VectorXd b;
 };
 
-/// Summed up as the tutorial writes it.
+/// Adds up H and b as the tutorial writes them.
 template <typename Pose>
 DenseEquations DenseNormalEquations(const PoseGraph<Pose>& graph, const Objective& objective = {}) {
   constexpr int kDof = Pose::kDof;
@@ -201,8 +201,8 @@ Eigen::MatrixXd DenseHessian(const PoseGraph<Pose>& graph) {
   return DenseNormalEquations(graph).H;
 }
 
-/// The inverse of a matrix without the rows and columns of some nodes of `dof` rows each, zero in
-/// their place; computed with a few more digits than double has.
+/// The inverse of a matrix without the rows and columns of some nodes (`dof` rows each), with zeros
+/// in their place. Computed with a few more digits than double has.
 inline Eigen::MatrixXd InverseWithout(const Eigen::MatrixXd& H, const std::vector<int>& nodes,
                                       int dof) {
   std::vector<Eigen::Index> kept;

@@ -32,7 +32,7 @@ struct HttpClient::Connection {
   beast::flat_buffer buffer;
   boost::system::error_code error;
 
-  // Does what was begun, in time.
+  // Waits until the operation is done, for at most the time allowed.
   void Finish(const char* what) {
     io.restart();
     io.run();

@@ -4,7 +4,7 @@
 
 namespace loopgrid::test_support {
 
-/// An index that is not negative, as the standard containers take it.
+/// An index, 0 or larger, as the type that standard containers use.
 constexpr std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace loopgrid::test_support

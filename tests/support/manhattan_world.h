@@ -14,8 +14,9 @@
 
 namespace loopgrid::test_support {
 
-/// A robot drives along the streets of a square city, a node at each crossing; where it has been
-/// before, constraints link the node to (at most `closures`) earlier ones. Poses from odometry.
+/// A robot drives along the streets of a square city, with a node at each crossing. At a crossing
+/// that it has visited before, constraints join the node to earlier ones (at most `closures`). The
+/// poses are from odometry.
 inline PoseGraph<SE2> ManhattanWorld(int nodes, int closures, unsigned seed) {
   const Eigen::Vector3d sigma(0.05, 0.05, 0.02);
   const Eigen::Matrix3d information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();

@@ -9,7 +9,7 @@
 
 namespace loopgrid::test_support {
 
-/// Bytes under a file name, without a disk: what a reader of files is fed by tests and fuzzers.
+/// A file in memory with a name, as input for readers of files in tests and fuzzers.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view bytes) : descriptor_(memfd_create("loopgrid", MFD_CLOEXEC)) {

@@ -13,8 +13,8 @@
 
 namespace loopgrid::test_support {
 
-/// A random symmetric positive definite matrix with eigenvalues of at least `floor`, the others up
-/// to some tens: anisotropic and with correlations.
+/// A random symmetric positive definite matrix with eigenvalues from `floor` to some tens,
+/// anisotropic and with correlations.
 template <typename Matrix>
 Matrix RandomInformationAbove(double floor, std::mt19937* random) {
   std::normal_distribution<double> normal;
@@ -23,9 +23,9 @@ Matrix RandomInformationAbove(double floor, std::mt19937* random) {
   return root * root.transpose() + floor * Matrix::Identity();
 }
 
-/// Poses anywhere and turned by any angle, in a chain with some more constraints between any two;
-/// landmarks that three nodes or more have seen. The graph's poses and landmarks are the true ones;
-/// measurements differ from them by up to `noise` in each coordinate.
+/// A chain of random poses with some more constraints between random nodes, and landmarks that at
+/// least three nodes have seen. The graph's poses and landmarks are the true ones; measurements
+/// differ from them by up to `noise` in each coordinate.
 template <typename Pose>
 PoseGraph<Pose> RandomKnownGraph(int nodes, int closures, int landmarks, double noise,
                                  std::mt19937* random) {
@@ -60,7 +60,7 @@ PoseGraph<Pose> RandomKnownGraph(int nodes, int closures, int landmarks, double 
   return graph;
 }
 
-/// Poses and landmarks anywhere, but for the held nodes.
+/// Sets all poses and landmarks to random ones, except held nodes.
 template <typename Pose>
 void Scramble(PoseGraph<Pose>* graph, std::mt19937* random) {
   const std::vector<int> held = HeldNodes(*graph, ConnectedComponents(*graph));
@@ -73,8 +73,9 @@ void Scramble(PoseGraph<Pose>* graph, std::mt19937* random) {
   }
 }
 
-/// Nodes in a circle, each measured exactly from the one before; `twist` more full turns about the
-/// vertical axis on the way round, in equal parts, are a local minimum where the ring is long.
+/// Nodes in a circle, each measured exactly from the one before. Along the ring the poses turn by
+/// `twist` additional full turns about the vertical axis, in equal parts. In a long ring that is a
+/// local minimum.
 template <typename Pose>
 PoseGraph<Pose> Ring(int nodes, int twist, double radius = 5.0) {
   PoseGraph<Pose> graph;

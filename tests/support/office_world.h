@@ -11,11 +11,11 @@ namespace loopgrid::test_support {
 /// on both sides of it, with doors, furniture, columns and a glass front.
 World OfficeWorld();
 
-/// A drive of about 150 m through it: once round the corridor with visits to rooms, which closes a
-/// loop of 110 m, then on over the first part again.
+/// A drive of about 150 m through it: once around the corridor with visits to rooms, which closes a
+/// loop of 110 m, then along the first part again.
 std::vector<Eigen::Vector2d> OfficeRoute();
 
-/// The run that logs/simulated-office.clf.gz holds.
+/// The run that is in logs/simulated-office.clf.gz.
 SimulatedRun OfficeRun();
 
 }  // namespace loopgrid::test_support

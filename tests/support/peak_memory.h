@@ -12,8 +12,8 @@
 
 namespace loopgrid::test_support {
 
-/// A value of /proc/self/status, such as "VmRSS:" (resident memory now) or "VmHWM:" (the most there
-/// was), in MB; 0 if it is not there.
+/// A value of /proc/self/status, such as "VmRSS:" (resident memory now) or "VmHWM:" (its maximum so
+/// far), in MB; 0 if it is not there.
 inline double ProcessStatusMb(const std::string& name) {
   std::ifstream status("/proc/self/status");
   std::string line;
@@ -26,8 +26,8 @@ inline double ProcessStatusMb(const std::string& name) {
   return 0.0;
 }
 
-/// The number that this program prints when it is run with other arguments: memory that has been
-/// used before does not count there. 0 if it does not print one.
+/// Runs this program with other arguments and returns the number that it prints; 0 if it prints
+/// none. The new process does not count memory that this one has used.
 inline double AskThisProgram(const std::string& arguments) {
   std::array<char, 4096> path{};
   if (readlink("/proc/self/exe", path.data(), path.size() - 1) < 0) return 0.0;

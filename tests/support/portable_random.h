@@ -6,8 +6,8 @@
 
 namespace loopgrid::test_support {
 
-/// Random numbers that are the same with every compiler and library: std::mt19937 is specified to
-/// the bit, the distributions of <random> are not.
+/// Random numbers that are the same with every compiler and library. The standard specifies
+/// std::mt19937 exactly, but not the distributions of <random>.
 class PortableRandom {
  public:
   explicit PortableRandom(std::uint32_t seed) : engine_(seed) {}
@@ -22,8 +22,8 @@ class PortableRandom {
     return static_cast<std::size_t>(Uniform() * static_cast<double>(count));
   }
 
-  /// Nearly normal with mean 0 and deviation 1: the sum of twelve uniform numbers, which needs no
-  /// function that libraries round differently. Never beyond 6.
+  /// Nearly normal with mean 0 and standard deviation 1, within -6..6. It is the sum of twelve
+  /// uniform numbers, because libraries round functions such as log() differently.
   double Normal() {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += Uniform();

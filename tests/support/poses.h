@@ -59,7 +59,7 @@ Eigen::MatrixXd Homogeneous(const Pose& pose) {
   return matrix;
 }
 
-/// How far two poses are apart: metres and radians, whichever is more, up to a small factor.
+/// A distance of two poses: the larger of metres and radians, up to a small factor.
 template <typename Pose>
 double Distance(const Pose& a, const Pose& b) {
   return (Homogeneous(a) - Homogeneous(b)).norm();

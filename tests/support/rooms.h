@@ -11,8 +11,8 @@
 
 namespace loopgrid::test_support {
 
-/// A room of about 9 m x 7 m that looks different from everywhere: no two walls alike, a box and a
-/// turned cupboard in it.
+/// A room of about 9 m x 7 m that looks different from every pose: all walls differ, and there are
+/// a box and a turned cupboard.
 inline World DistinctiveRoom() {
   World world;
   const std::array<Eigen::Vector2d, 8> outline = {Eigen::Vector2d(-4.0, -3.0),
@@ -37,7 +37,7 @@ inline World BareCorridor(double width = 2.0) {
   return world;
 }
 
-/// A laser in the robot's middle that looks all around and makes no errors.
+/// A laser at the robot's centre with a field of view of 360 degrees and without noise.
 inline SimulatedLaser ExactLaser(int beams = 720) {
   SimulatedLaser laser;
   laser.T_robot_laser = SE2();

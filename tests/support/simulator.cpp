@@ -33,7 +33,7 @@ std::vector<SE2> DriveRoute(std::span<const Eigen::Vector2d> route,
   return poses;
 }
 
-// What the wheels count for a true motion between two scans.
+// The motion that odometry measures for a true motion between two scans.
 SE2 Measure(const SE2& motion, const SimulatedOdometry& odometry, PortableRandom* random) {
   const double distance = motion.translation().norm();
   const double turn = motion.theta();
@@ -66,7 +66,8 @@ void World::AddBox(const Eigen::Vector2d& centre, const Eigen::Vector2d& size, d
 
 double CastRay(const World& world, const Eigen::Vector2d& origin,
                const Eigen::Vector2d& direction) {
-  // Plain numbers, since sanitizers make vectors slow and there are tens of millions of meetings.
+  // Plain numbers instead of vectors, which are slow under sanitizers: this code runs tens of
+  // millions of times.
   const double dx = direction.x();
   const double dy = direction.y();
   double nearest = kInfinity;
@@ -80,7 +81,7 @@ double CastRay(const World& world, const Eigen::Vector2d& origin,
     const double along_y = wall.to.y() - wall.from.y();
     const double determinant = dx * along_y - dy * along_x;
     const double s = -side_of_from / determinant;
-    if (!(s >= 0.0 && s <= 1.0)) continue;  // also where the wall is parallel
+    if (!(s >= 0.0 && s <= 1.0)) continue;  // also refuses NaN, if the wall is parallel
     const double t = (from_x * along_y - from_y * along_x) / determinant;
     if (t <= 0.0 || t >= nearest) continue;
     nearest = t;
@@ -100,7 +101,7 @@ LaserScan SimulateScan(const World& world, const SE2& T_world_robot, const Simul
     const double angle = T_world_laser.theta() + laser.first_angle + i * laser.angle_step;
     const double distance =
         CastRay(world, T_world_laser.translation(), {std::cos(angle), std::sin(angle)});
-    // Noise is drawn for every beam, so that one wall more changes only the beams that meet it.
+    // Noise is drawn for every beam, so that an additional wall changes only the beams that hit it.
     const double noisy = distance + laser.range_noise * random->Normal();
     const bool returns = distance <= laser.usable_range;
     const double quanta = std::max(0.0, std::round(noisy / laser.quantum));

@@ -15,7 +15,7 @@ namespace loopgrid::test_support {
 struct Wall {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
-  bool glass = false;  ///< swallows beams: no return
+  bool glass = false;  ///< beams do not return from it
 };
 
 struct World {
@@ -38,7 +38,7 @@ struct SimulatedLaser {
   double range_noise = 0.01;   ///< standard deviation, metres
   double quantum = 0.01;       ///< readings are whole multiples of this, metres
   double usable_range = 30.0;  ///< beyond it a beam does not return
-  double no_return = 81.83;    ///< the reading that says so
+  double no_return = 81.83;    ///< the reading of such a beam
 };
 
 /// Wheel odometry that slips and has a bias.
@@ -60,23 +60,23 @@ struct SimulationOptions {
   SimulatedOdometry odometry;
 };
 
-/// What a robot recorded, and where it really was.
+/// The recording of a robot, and its true poses.
 struct SimulatedRun {
   std::vector<Observation> observations;
   std::vector<SE2> true_poses;  ///< T_world_robot of each observation
 };
 
 /// The distance from `origin` along `direction` (a unit vector) to the first wall, metres: infinite
-/// where there is none or where it is glass.
+/// if there is none or if it is glass.
 double CastRay(const World& world, const Eigen::Vector2d& origin, const Eigen::Vector2d& direction);
 
 /// One scan from `T_world_robot`, with noise.
 LaserScan SimulateScan(const World& world, const SE2& T_world_robot, const SimulatedLaser& laser,
                        PortableRandom* random);
 
-/// Drives from waypoint to waypoint, turning in place at each, and scans on the way. The odometry
-/// starts at the origin, the true pose at the first waypoint, looking at the second. Every run with
-/// the same arguments is the same.
+/// Drives from waypoint to waypoint, turns in place at each, and scans on the path. Odometry starts
+/// at the origin; the true pose starts at the first waypoint and looks at the second. The same
+/// arguments give the same run.
 SimulatedRun Simulate(const World& world, std::span<const Eigen::Vector2d> route,
                       const SimulationOptions& options = {});
 

@@ -8,9 +8,9 @@
 
 namespace loopgrid::test_support {
 
-/// A robot drives round a sphere in rings from the south to the north, as in Section V of the
-/// tutorial: constraints from node to node and to the node of the ring before. Poses from odometry.
-/// `sigma` is the standard deviation of the noise, metres and radians.
+/// A robot drives on a sphere in rings from south to north, as in Section V of the tutorial.
+/// Constraints join each node to the one before and to its neighbour on the ring before. The poses
+/// are from odometry. `sigma` is the standard deviation of the noise, metres and radians.
 inline PoseGraph<SE3> SphereWorld(int rings, int nodes_a_ring, double sigma, unsigned seed) {
   constexpr double kRadius = 10.0;
   std::mt19937 random(seed);

@@ -24,7 +24,7 @@ inline void WriteFile(const std::string& path, std::string_view content) {
   if (!stream) throw std::runtime_error("cannot write " + path);
 }
 
-/// A folder of its own for a test, gone with all that is in it at the end.
+/// A folder for one test. The destructor removes it with everything in it.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -57,7 +57,7 @@ class TemporaryDirectory {
     return names;
   }
 
-  /// Every file and folder in it at any depth, as paths from here.
+  /// Every file and folder in it at any depth, as relative paths.
   std::set<std::string> Everything() const {
     std::set<std::string> found;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
