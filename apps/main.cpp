@@ -45,7 +45,7 @@ void OccupyStandardStreams() {
   if (descriptor >= 0) close(descriptor);
 }
 
-/// What the commands are asked to do.
+/// The options of all commands.
 struct Options {
   RunOptions run;
   OnlineOptions online;
@@ -59,9 +59,9 @@ Program DescribeProgram(Options* options) {
   return {.name = "loopgrid",
           .version = LOOPGRID_VERSION,
           .summary =
-              "Graph-based 2D laser SLAM: a robot's log in; map, trajectory and graph out. Its "
+              "Graph-based 2D laser SLAM: makes map, trajectory and graph from a robot's log. Its "
               "back-end\n"
-              "alone: a pose graph in, 2D or 3D; the best poses and their covariances out.",
+              "alone finds the best poses of a pose graph, 2D or 3D, and their covariances.",
           .footer =
               "loopgrid COMMAND --help explains a command's options.\n"
               "Exit status: 0 done, 2 wrong usage, 3 an input cannot be used, 4 an output cannot "

@@ -8,7 +8,7 @@ Command DescribeEval(EvalOptions* options) {
       .summary = "Say how accurate a trajectory is",
       .arguments =
           {{.name = "ESTIMATE",
-            .help = "The trajectory to judge, TUM format: time x y z qx qy qz qw",
+            .help = "The trajectory to evaluate, TUM format: time x y z qx qy qz qw",
             .target = &options->estimate,
             .required = true},
            {.name = "REFERENCE",

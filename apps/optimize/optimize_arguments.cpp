@@ -10,9 +10,9 @@ namespace loopgrid {
 namespace {
 
 constexpr const char* kOptimizeFooter =
-    "Files, all of them or none; an output that cannot be written is found out first:\n"
+    "All files are written, or none. If one cannot be written, the command fails at the start.\n"
     "  --out        the graph with its new poses: TORO if the name ends in .graph or .toro, else\n"
-    "               g2o; .gz at the end packs it\n"
+    "               g2o; gzipped if it ends in .gz\n"
     "  --picture    constraints before and after, landmarks as dots\n"
     "  --trace      iteration, F, chi2 (F without losses and Euler angles), damping, step, "
     "seconds\n"
@@ -53,17 +53,18 @@ std::vector<Argument> SolverArguments(OptimizeOptions* options) {
                "angles were Euclidean (Algorithm 1)",
        .target = OneOf(kParametrizations, options->parametrization, &options->parametrization)},
       {.name = "--init",
-       .help = "Where to start; none: at the poses in the file; auto: wherever it takes to get to "
-               "the\noptimum, but with euler as none",
+       .help =
+           "Where to start; none: at the poses in the file; auto: from these in turn, until the\n"
+           "end is proved to be the optimum (with euler: none)",
        .target = OneOf(kInitialGuesses, options->init, &options->init)},
       {.name = "--max-iterations",
        .unit = "N",
-       .help = "At most so many a start",
+       .help = "At most so many iterations for each start",
        .target = &options->max_iterations,
        .shows_default = true},
       {.name = "--tolerance",
        .unit = "SHARE",
-       .help = "Done when a step promises to lower F by a smaller share",
+       .help = "Stop when a step would lower F by less than this share of it",
        .target = &options->tolerance,
        .shows_default = true,
        .field = "relative_decrease"},
@@ -74,18 +75,18 @@ std::vector<Argument> SolverArguments(OptimizeOptions* options) {
 }
 
 std::vector<Argument> LossArguments(OptimizeOptions* options) {
-  return {{.name = "--loss",
-           .help = "Robust loss for constraints that may be wrong; gnc: geman-mcclure, graduated",
-           .target = OneOf(kLosses, options->loss, &options->loss)},
-          {.name = "--loss-width",
-           .unit = "SIGMA",
-           .help = "Up to this error the loss is (nearly) the square, standard deviations "
-                   "[default: 3]",
-           .target = &options->loss_width,
-           .field = "robust loss width"},
-          {.name = "--robust",
-           .help = "What it applies to; closures: what does not join a node to the next one by id",
-           .target = OneOf(kRobustSets, RobustSet::kClosures, &options->robust)}};
+  return {
+      {.name = "--loss",
+       .help = "Robust loss for constraints that may be wrong; gnc: geman-mcclure, graduated",
+       .target = OneOf(kLosses, options->loss, &options->loss)},
+      {.name = "--loss-width",
+       .unit = "SIGMA",
+       .help = "Up to this many standard deviations the loss is (nearly) the square [default: 3]",
+       .target = &options->loss_width,
+       .field = "robust loss width"},
+      {.name = "--robust",
+       .help = "Constraints with this loss; closures: all that do not join consecutive ids",
+       .target = OneOf(kRobustSets, RobustSet::kClosures, &options->robust)}};
 }
 
 std::vector<Argument> OtherArguments(OptimizeOptions* options) {
@@ -96,7 +97,7 @@ std::vector<Argument> OtherArguments(OptimizeOptions* options) {
        .target = &options->lenient},
       {.name = "--json", .help = "Print JSON [default: text]", .target = &options->json},
       {.name = "--quiet",
-       .help = "Do not show what is going on [default: if standard error is a terminal]",
+       .help = "Do not show progress [default: shown if standard error is a terminal]",
        .target = &options->quiet}};
 }
 

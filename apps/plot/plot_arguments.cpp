@@ -4,9 +4,9 @@ namespace loopgrid {
 
 Command DescribePlot(PlotOptions* options) {
   return {.name = "plot",
-          .summary = "Draw how the error fell, one curve a trace",
+          .summary = "Draw F over the iterations, one curve for each trace",
           .arguments = {{.name = "TRACE",
-                         .help = "What loopgrid optimize --trace wrote; any number",
+                         .help = "A file of loopgrid optimize --trace; any number of them",
                          .target = &options->traces,
                          .required = true},
                         {.name = "--out",
@@ -15,7 +15,7 @@ Command DescribePlot(PlotOptions* options) {
                          .target = &options->out,
                          .required = true}},
           .footer =
-              "F(x) over the iterations; the axis is logarithmic if F falls by more than a "
+              "F over the iterations; the axis is logarithmic if F falls by more than a "
               "factor of 20.",
           .action = [options] { PlotCommand(*options); }};
 }

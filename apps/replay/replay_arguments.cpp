@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kReplayFooter =
     "The log's lines are passed on byte for byte, each at its time by the time stamps of the\n"
-    "scans. Steps backwards and gaps of more than 5 seconds are not waited for. With --to, it\n"
+    "scans. It does not wait where they step back or jump by more than 5 seconds. With --to, it\n"
     "ends when the receiver has closed the connection.";
 
 }  // namespace
