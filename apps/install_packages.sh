@@ -42,7 +42,7 @@ if [[ $(id -u) -ne 0 ]]; then
 fi
 
 echo "installing: ${missing[*]}"
-# Lists that cannot be refreshed just now may still do.
+# If the lists cannot be refreshed now, the old ones may be good enough.
 "${as_root[@]}" apt-get update -qq || true
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
   -o DPkg::Lock::Timeout=300 --no-install-recommends "${missing[@]}" >/dev/null

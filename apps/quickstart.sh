@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# From a fresh clone to a map: installs what is missing, builds, maps, says where the map is.
+# From a fresh clone to a map: installs missing packages, builds, maps, and prints where the map is.
 # Usage: apps/quickstart.sh [LOG]   (CARMEN log or MRPT rawlog)
-# Without LOG it takes logs/intel.clf if that is there (logs/fetch.sh intel), else a small real log
+# Without LOG it uses logs/intel.clf if that exists (logs/fetch.sh intel), else a small real log
 # that Debian's package mrpt-common ships.
 set -euo pipefail
 

@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder and what its files may include beside each other. `reaches` names rooms; a name that
-/// ends in `/` stands for the room and all rooms inside it.
+/// A folder, and the rooms that its files may include besides its own. A name that ends in `/`
+/// stands for the room and all rooms inside it.
 struct Room {
   std::string_view folder;
   std::vector<std::string_view> reaches;
 };
 
-/// Each room reaches only rooms that stand above it in this table, so no circle is possible.
+/// Each room reaches only rooms above it in this table, so there is no cycle.
 const std::vector<Room>& Rooms() {
   static const std::vector<Room> rooms = {
       {"backend/base", {}},
@@ -120,7 +120,8 @@ std::string_view FolderOf(std::string_view path) {
   return slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
 }
 
-/// Whether `folder` is what `name` names: the room, or with a last slash also any room inside it.
+/// Whether `name` stands for `folder`: the room itself, or with a last slash also any room inside
+/// it.
 bool Names(std::string_view name, std::string_view folder) {
   if (!name.ends_with('/')) return folder == name;
   return folder == name.substr(0, name.size() - 1) || folder.starts_with(name);

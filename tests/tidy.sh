@@ -6,9 +6,9 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 apps/install_packages.sh tidy
-# Each source alone: together with others it would not miss an include.
+# Each source is compiled alone: together with others, a missing include would not be noticed.
 cmake --preset tidy >/dev/null
-# The page of `--view` is a source that the build makes.
+# The build makes the source of the page of `--view`.
 cmake --build --preset tidy --target loopgrid_page >/dev/null
 
 paths=("$@")

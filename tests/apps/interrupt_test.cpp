@@ -32,7 +32,7 @@ using ::testing::IsEmpty;
 using Names = std::set<std::string>;
 using namespace std::chrono_literals;
 
-/// Runs on a log that takes its time, for signals to end them.
+/// Runs on a long log, which signals end.
 class RunInProgress : public ::testing::Test {
  protected:
   RunInProgress() { WriteFile(folder_.File("long.clf"), SmallLog(20000)); }
@@ -85,7 +85,8 @@ TEST(Interrupt, LeavesAllFilesOrNoneWhereverItFalls) {
     std::this_thread::sleep_for(i * 10ms);
     program.Send(SIGINT);
     const int status = program.Wait().status;
-    // Killed outright before it had anything to clean up, stopped, or done before the signal came.
+    // It was killed before it had anything to clean up, was interrupted, or ended before the
+    // signal.
     ASSERT_TRUE(status == 1000 + SIGINT || status == 128 + SIGINT || status == 0) << status;
     if (status != 0) ++stopped;
     const Names found = folder.Everything();

@@ -75,7 +75,7 @@ ProgramResult Program::Wait() {
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
     if (poll(streams.data(), streams.size(), -1) < 0) continue;
     for (size_t i = 0; i < streams.size(); ++i) {
-      // Streams with a negative descriptor are passed over by poll().
+      // poll() ignores streams with a negative descriptor.
       if (streams[i].revents != 0 && !Drain(streams[i].fd, texts[i])) streams[i].fd = -1;
     }
   }

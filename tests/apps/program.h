@@ -8,7 +8,7 @@
 
 namespace loopgrid::test_support {
 
-/// What a run of the program `loopgrid` left behind.
+/// The result of a run of the program `loopgrid`.
 struct ProgramResult {
   int status = 0;      ///< exit status; 1000 + the signal's number if a signal killed it
   std::string output;  ///< standard output

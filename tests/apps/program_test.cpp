@@ -1,4 +1,4 @@
-// The program as its user meets it: files, exit status, what it prints.
+// The program as a user sees it: files, exit status, output.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -73,7 +73,7 @@ class ProgramTest : public ::testing::Test {
   std::string out_ = folder_.File("out");
 };
 
-/// Root may read and write everything; tests of permissions need somebody who may not.
+/// Root may read and write everything, so tests of permissions need another user.
 void BecomeOrdinaryUser() {
   constexpr uid_t kNobody = 65534;
   if (geteuid() != 0) return;
@@ -278,7 +278,7 @@ TEST_F(ProgramTest, FolderWithoutPermissionIsAnOutputError) {
 }
 
 TEST_F(ProgramTest, OutputIsTriedBeforeTheLogIsRead) {
-  // The log's one bad line would stop a strict run, had it come so far.
+  // The log has one bad line, at which a strict run would stop if it read the log.
   WriteFile(log_, SmallLog(1) + "FLASER 3 1 2\n");
   ExpectRefusal({"run", log_, "--out", "/dev/null", "--strict"}, 4, "/dev/null: ");
 }
@@ -357,7 +357,7 @@ TEST_F(ProgramTest, ClosedStandardStreamsDoNotMixWithTheFiles) {
   const ProgramResult result = Run(log_, other, [] {
     for (int descriptor : {0, 1, 2}) close(descriptor);
   });
-  // The summary could not be printed, but the files are whole.
+  // The summary could not be printed, but the files are complete.
   EXPECT_EQ(result.status, 4);
   for (const std::string& name : kOutputs) {
     if (name == "report.json") continue;

@@ -1,4 +1,4 @@
-// The pages (README.md in each folder) keep up with the program and with the tree.
+// The pages (README.md in each folder) agree with the program and with the tree.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -68,7 +68,7 @@ std::string Section(const std::string& page, const std::string& heading) {
   return text.substr(begin, text.find("\n## ", begin + 1) - begin);
 }
 
-/// What GitHub makes of a heading: the part of a link after the #.
+/// The anchor that GitHub makes of a heading: the part of a link after the #.
 std::string AnchorOf(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {
@@ -90,7 +90,7 @@ std::vector<std::string> AnchorsOf(const fs::path& file) {
   return anchors;
 }
 
-/// What is wrong with a link of a page; empty if it leads somewhere.
+/// The problem with a link of a page; empty if its target exists.
 std::string ProblemWithLink(const std::string& page, const std::string& link) {
   if (link.starts_with("http://") || link.starts_with("https://")) return "";
   const std::size_t mark = std::min(link.find('#'), link.size());
@@ -127,7 +127,7 @@ TEST(Readme, ALinkThatLeadsNowhereIsFound) {
 
 TEST(Readme, EveryFileAndFolderThatAPageNamesIsThere) {
   const std::regex path("`((?:apps|backend|frontend|logs|mapping|tests)/[A-Za-z0-9_./-]*)[` ]");
-  // What logs/fetch.sh gets, and a page's own examples.
+  // Files that logs/fetch.sh downloads, and examples.
   const std::set<std::string> elsewhere = {"logs/intel.clf", "logs/NAME.clf"};
   std::size_t count = 0;
   for (const std::string& page : Pages()) {
@@ -180,7 +180,7 @@ TEST(Readme, NamesEveryColumnOfClosuresCsv) {
   const std::string csv = FormatClosuresCsv({});
   std::istringstream header(csv.substr(0, csv.find('\n')));
   for (std::string column; std::getline(header, column, ',');) {
-    if (column.starts_with("cov_")) continue;  // told of as a row
+    if (column.starts_with("cov_")) continue;  // the page has a row for all of them
     EXPECT_THAT(section, HasSubstr(fmt::format("`{}`", column)));
   }
   EXPECT_THAT(csv, HasSubstr("cov_xx"));

@@ -1,5 +1,5 @@
-// The program on whole recordings, with the accuracy that is asked of it there. Real ones are not
-// part of the project: the environment variable LOOPGRID_DATA says where they are.
+// The program on whole recordings, with the accuracy that is required there. Real recordings are
+// not part of the project. The environment variable LOOPGRID_DATA names their folder.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using test_support::TemporaryDirectory;
 struct Recording {
   const char* log;
   int scans;
-  const char* reference;    // a trajectory; good to a few decimetres itself
+  const char* reference;    // a trajectory with errors of a few decimetres
   double most_rms;          // metres from the reference, after alignment
   const char* relations;    // empty if there are none
   double most_translation;  // mean of the exact relations' errors, metres

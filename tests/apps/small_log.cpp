@@ -26,7 +26,7 @@ double RangeToWall(const Eigen::Vector2d& from, double direction) {
                   to_wall(from.y(), std::sin(direction), kHalfWidth));
 }
 
-/// What the robot sees from `pose` when odometry says that it is at `odometry`.
+/// The scan of the robot at `pose` when its odometry is `odometry`.
 std::string ScanLine(const SE2& pose, const SE2& odometry, double seconds) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   std::string text = "FLASER 180";

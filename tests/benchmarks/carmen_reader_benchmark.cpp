@@ -1,4 +1,4 @@
-// How fast CARMEN logs are read: bytes of text a second. The bar is 100 MB/s on one core.
+// Speed of reading CARMEN logs, in bytes of text a second. The goal is 100 MB/s on one core.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace loopgrid {
 namespace {
 
-// A log like those of a SICK laser: 180 readings in centimetres, some without return.
+// A log like that of a SICK laser: 180 readings in centimetres, some without return.
 std::string SickLog(int scans) {
   std::string log = "PARAM robot_frontlaser_offset 0.0 nohost 0\n";
   std::uint32_t state = 1;
@@ -59,7 +59,7 @@ void BM_ReadGzippedLog(benchmark::State& state) {
 }
 BENCHMARK(BM_ReadGzippedLog)->Unit(benchmark::kMillisecond);
 
-// What of that is the cutting into lines.
+// The part of this that splits the text into lines.
 void BM_ReadPlainLines(benchmark::State& state) {
   const std::string log = SickLog(2'000);
   const test_support::MemoryFile file(log);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints tables of the back-end beside Ceres, and of how its cost grows, as Markdown.
+# Prints tables as Markdown: the back-end beside Ceres, and how its time grows with the graph.
 # Usage: LOOPGRID_DATA=FOLDER tests/benchmarks/compare_solvers.sh [options of Google Benchmark]
 # (graphs are taken from FOLDER/graphs). Installs what is missing and builds.
 set -euo pipefail
@@ -10,7 +10,7 @@ cmake --preset benchmark >/dev/null
 cmake --build --preset benchmark --target solver_benchmark >/dev/null
 
 # name,iterations,real_time,cpu_time,time_unit,...,then a column for each counter.
-# One thread: CHOLMOD would take more.
+# Use one thread; CHOLMOD would use more by default.
 OMP_THREAD_LIMIT=1 build/benchmark/tests/benchmarks/solver_benchmark --benchmark_format=csv "$@" |
   awk -F, '
     function Unquoted(text) { gsub(/"/, "", text); return text }

@@ -1,5 +1,5 @@
-// The parts of one iteration on the way to an optimum, covariances, and a graph that is optimised
-// after each node while it grows. Whole optimisations are in solver_benchmark.cpp.
+// The parts of one iteration, covariances, and a graph that is optimised after each new node. Whole
+// optimisations are in solver_benchmark.cpp.
 
 #include <benchmark/benchmark.h>
 

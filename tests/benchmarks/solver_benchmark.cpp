@@ -23,7 +23,7 @@
 namespace loopgrid {
 namespace {
 
-/// F counts as the optimum up to this share.
+/// F is taken for the optimum if it is higher by at most this share.
 constexpr double kTolerance = 1e-6;
 
 template <typename Pose>
@@ -37,7 +37,7 @@ double Optimum(PoseGraph<Pose> start) {
   return Optimizer<Pose>().Optimize(&start).final_error;
 }
 
-/// From the start in the file, or, where another one leads to a lower F, from the chordal guess.
+/// Starts at the poses in the file, or at the chordal guess where this leads to a lower F.
 template <typename Pose>
 Task<Pose> MakeTask(const PoseGraph<Pose>& graph) {
   PoseGraph<Pose> guessed = graph;
@@ -51,7 +51,7 @@ Task<Pose> MakeTask(const PoseGraph<Pose>& graph) {
 template <typename Pose>
 using TaskSource = std::function<const Task<Pose>&()>;
 
-/// Made when first asked for.
+/// Made at the first call.
 template <typename Pose>
 TaskSource<Pose> Lazy(const std::string& name) {
   auto task = std::make_shared<std::optional<Task<Pose>>>();
@@ -108,7 +108,7 @@ void Ceres(benchmark::State& state, const std::string& name, const TaskSource<Po
     result = OptimizeWithCeres(settings, graph);
   };
   const double enough = task().optimum * (1.0 + kTolerance);
-  // The loosest tolerance that does.
+  // Use the largest tolerance that reaches the optimum.
   for (double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
     settings.function_tolerance = tolerance;
     PoseGraph<Pose> graph = task().start;
@@ -171,8 +171,8 @@ void RegisterAll() {
   }
 }
 
-/// Takes the first steps of optimising a graph, which need the same memory as all of them, and
-/// prints how much that was at its peak, in MB.
+/// Takes the first steps of optimising a graph and prints the peak of the memory in MB. More steps
+/// need no more memory.
 template <typename Pose>
 void PrintPeakMemory(const std::string& what, PoseGraph<Pose> graph) {
   const double before = test_support::ProcessStatusMb("VmRSS:");

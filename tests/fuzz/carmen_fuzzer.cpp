@@ -1,5 +1,4 @@
-// Any bytes as a CARMEN log: nothing may crash, and whatever is given out keeps the promises of
-// LaserScan.
+// Any bytes as a CARMEN log: nothing may crash, and every scan is as LaserScan says.
 
 #include <cmath>
 #include <cstdint>
@@ -40,7 +39,7 @@ loopgrid::LogStatistics ReadAll(const std::string& path, bool strict) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  if (bytes.find('\0') != bytes.npos) return 0;  // those are for the rawlog reader
+  if (bytes.find('\0') != bytes.npos) return 0;  // such bytes go to the rawlog reader
   const loopgrid::test_support::MemoryFile file(bytes);
   loopgrid::LogStatistics lenient;
   try {

@@ -1,5 +1,5 @@
-// Any bytes as a graph file, g2o or TORO: nothing may crash, and a graph that is accepted is sound,
-// comes back unchanged when it is written as g2o and read again, and in 2D as TORO, too.
+// Any bytes as a graph file, g2o or TORO: nothing may crash. A graph that is accepted is valid, and
+// is the same after it is written as g2o, in 2D also as TORO, and read again.
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Any bytes as a file of relations: an Error, or relations that are sound.
+// Any bytes as a file of relations: an Error, or valid relations.
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Stands in for libFuzzer in normal test builds: feeds the target every file of the folders given,
-// whole and cut off at every byte.
+// Takes the place of libFuzzer in normal test builds: runs the target on every file of the given
+// folders, whole and cut off at every byte.
 
 #include <algorithm>
 #include <cstdint>
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   std::sort(seeds.begin(), seeds.end());
   for (const auto& seed : seeds) {
     std::printf("%s\n", seed.c_str());
-    std::fflush(stdout);  // the last line names the culprit of a crash
+    std::fflush(stdout);  // after a crash the last line names the file
     std::ifstream stream(seed, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     for (std::size_t size = 0; size <= bytes.size(); ++size) {

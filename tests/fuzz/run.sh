@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes each reader for some time under AddressSanitizer and UndefinedBehaviorSanitizer.
 # Usage: tests/fuzz/run.sh [SECONDS [FUZZER...]]    (default: 60 s each; carmen graph relations tum)
-# What makes a reader fail is left in build/fuzz/findings/; mend it, then add the input as a seed to
-# tests/fuzz/corpus/FUZZER/, which every test run replays.
+# Inputs that make a reader fail are written to build/fuzz/findings/. Correct the reader, then add the
+# input as a seed to tests/fuzz/corpus/FUZZER/. Every test run replays the seeds.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

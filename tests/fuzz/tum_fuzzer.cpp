@@ -1,4 +1,4 @@
-// Any bytes as a TUM trajectory: an Error, or poses that are sound.
+// Any bytes as a TUM trajectory: an Error, or valid poses.
 
 #include <cmath>
 #include <cstdint>

@@ -48,7 +48,7 @@ TEST(DrawCurves, ShowsEachCurveInItsColour) {
 }
 
 TEST(DrawCurves, IsLogarithmicWhereTheRangeIsLarge) {
-  // Of a geometric sequence the middle one is half way down, on a logarithmic axis.
+  // On a logarithmic axis the middle value of a geometric sequence is in the middle.
   const auto middle_of = [](double ratio) {
     const Curve all = Falling("all", 1000.0, ratio, 3);
     const Curve middle{"middle", {all.points[1]}};

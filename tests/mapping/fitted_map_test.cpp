@@ -61,10 +61,10 @@ TEST(RenderFittedMap, HasLargerCellsWhereMostScansNeedThem) {
   const FittedMap map =
       RenderFittedMap(poses, OneWall, {.resolution = 0.01}, {.max_side = 1000, .coarsest = 1.0});
   EXPECT_THAT(map.left_out, IsEmpty());
-  // 10,000 cells a side; with 0.10 m it would be 1,000 and some at the borders.
+  // 10,000 cells a side. With 0.10 m there would be a few more than 1,000, because of the borders.
   EXPECT_DOUBLE_EQ(map.grid.resolution(), 0.11);
   EXPECT_LE(DrawMap(map.grid).width, 1000);
-  // Every wall is still to be seen.
+  // Every wall is still visible.
   for (int i = 1; i <= 100; ++i) {
     EXPECT_EQ(map.grid.State(static_cast<std::int64_t>(i / map.grid.resolution()), 0),
               CellState::kWall)

@@ -96,7 +96,7 @@ TEST(DrawGraphBeforeAfter, ShowsLandmarksAsDots) {
   state.landmarks = {{5.0, 5.0, 0.0}, {2.0, 7.0, 0.0}};
   const cv::Mat image = Decode(DrawGraphBeforeAfter(state, state, SquareEdges()));
   EXPECT_GT(Count(image.rowRange(0, image.rows - kLegendHeight), kGreen), 4 * 30);
-  // At the border of the picture, too, whole dots.
+  // Dots at the border of the picture are complete too.
   GraphState corners = state;
   corners.landmarks = {{-5.0, -5.0, 0.0}, {15.0, 15.0, 0.0}};
   EXPECT_NEAR(Count(Decode(DrawGraphBeforeAfter(corners, corners, SquareEdges())), kGreen),
@@ -120,12 +120,12 @@ TEST(DrawGraphBeforeAfter, LeavesPaperBetweenTheLinesOfALargeGraph) {
   const cv::Mat middle =
       image(cv::Rect(image.cols / 8, image.rows / 4, image.cols / 4, image.rows / 2));
   const cv::Scalar mean = cv::mean(middle);
-  EXPECT_GT(mean[0], 100.0);  // of blue, of which the ink has 35 and the paper 255
+  EXPECT_GT(mean[0], 100.0);  // of blue, which is 35 in the ink and 255 in the paper
   EXPECT_LT(mean[0], 240.0);
 }
 
 TEST(DrawGraphBeforeAfter, ShowsWhatIsFartherAwayPaler) {
-  // Two poles, one behind the other as an oblique view sees it, which puts it higher.
+  // Two poles. In the oblique view one is behind the other, and so higher in the picture.
   GraphState state;
   state.nodes = {{3.0, -4.0, 0.0}, {3.0, -4.0, 1.0}, {-3.0, 4.0, 0.0}, {-3.0, 4.0, 1.0}};
   const std::vector<GraphEdge> edges = {{0, 1}, {2, 3}};

@@ -30,7 +30,7 @@ cv::Mat DecodePixels(const std::string& bytes) {
   return cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()), cv::IMREAD_UNCHANGED);
 }
 
-// The trinary rule of ROS's map_server, with the numbers it would read from the yaml.
+// The trinary rule of ROS's map_server, with the numbers from the yaml.
 CellState MapServerState(int value, const std::string& yaml) {
   const auto number = [&yaml](const std::string& key) {
     return std::stod(yaml.substr(yaml.find(key + ": ") + key.size() + 2));

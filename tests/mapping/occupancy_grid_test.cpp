@@ -56,8 +56,8 @@ CellIndex CellOf(const Eigen::Vector2d& p, double resolution) {
           static_cast<std::int64_t>(std::floor(p.y() / resolution))};
 }
 
-// What AddScan promises, by sampling beams far finer than a cell instead of walking them. Within a
-// hundredth of a cell of a boundary the grid's lattice may take either side.
+// The effect of AddScan by another method: beams are sampled in steps much smaller than a cell.
+// Within a hundredth of a cell of a boundary both sides are right.
 struct NaiveScan {
   std::set<CellIndex> hit;
   std::set<CellIndex> surely_crossed;
@@ -147,7 +147,7 @@ TEST(OccupancyGrid, AgreesWithDenseSamplingOnRandomScans) {
 TEST(OccupancyGrid, HitsOfAScanAreNotClearedByItsOtherBeams) {
   OccupancyGrid grid({.resolution = 0.1});
   OwnedScan scan;
-  scan.hits = {{2.1F, 0.05F}, {1.1F, 0.05F}, {1.11F, 0.06F}};  // the first passes the others
+  scan.hits = {{2.1F, 0.05F}, {1.1F, 0.05F}, {1.11F, 0.06F}};  // the first beam passes the others
   grid.AddScan(SE2(0.05, 0.0, 0.0), scan.View());
   EXPECT_EQ(grid.LogOdds(11, 0), grid.options().hit_log_odds);
   EXPECT_EQ(grid.LogOdds(12, 0), grid.options().miss_log_odds);
@@ -181,7 +181,7 @@ TEST(OccupancyGrid, SeventyThousandScansCountAsMany) {
   scan.hits = {{0.55F, 0.0F}};
   OwnedScan elsewhere;
   elsewhere.hits = {{-5.0F, 0.0F}};
-  // More scans than a cell's scan number can tell apart.
+  // More scans than there are scan numbers of a cell.
   for (int i = 0; i < 70000; ++i) {
     grid.AddScan(SE2(0.05, 0.05, 0.0), (i % 7 == 0 ? scan : elsewhere).View());
   }

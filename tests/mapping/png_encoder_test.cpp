@@ -28,7 +28,7 @@ Bytes RandomPixels(std::size_t count, std::uint32_t seed) {
   return pixels;
 }
 
-// By another decoder than libpng's own; its colours are blue, green, red.
+// Decodes with OpenCV, not libpng. Its colours are blue, green, red.
 cv::Mat DecodeUnchanged(const std::string& png) {
   return cv::imdecode(Bytes(png.begin(), png.end()), cv::IMREAD_UNCHANGED);
 }

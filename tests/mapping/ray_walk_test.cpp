@@ -42,7 +42,7 @@ struct Fraction {
 // inside the cell? `low` and `high` bound the part t in [0, 1] that is inside the slabs so far.
 bool ClipToSlab(std::int64_t start, std::int64_t delta, std::int64_t cell, Fraction* low,
                 Fraction* high) {
-  // Half steps of the lattice, where a point is odd and a boundary even.
+  // In half steps of the lattice: points are odd, boundaries are even.
   const __int128 first = 2 * GridPoint::kOne * cell - (2 * start + 1);
   const __int128 last = first + 2 * GridPoint::kOne;
   if (delta == 0) return first < 0 && last > 0;
@@ -61,7 +61,7 @@ bool Crosses(GridPoint from, GridPoint to, CellNumber cell) {
          ClipToSlab(from.y, to.y - from.y, cell.second, &low, &high);
 }
 
-// All cells of the bounding box that the segment crosses, but the one it ends in.
+// All cells of the bounding box that the segment crosses, without the one in which it ends.
 std::set<CellNumber> BruteForce(GridPoint from, GridPoint to) {
   std::set<CellNumber> cells;
   const auto [min_x, max_x] = std::minmax({from.cell_x(), to.cell_x()});

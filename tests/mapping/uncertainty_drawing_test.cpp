@@ -26,7 +26,8 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(DrawUncertainty, TurnsCovariancesFromTheNodesFrameIntoTheMaps) {
-  // Two nodes that look along y and know little along their own x axis: upright ellipses.
+  // Two nodes that look along y and are uncertain along their own x axis, so the ellipses are
+  // upright.
   const std::vector<SE2> nodes = {SE2(0.0, 0.0, 1.5707963), SE2(20.0, 0.0, 1.5707963)};
   const Eigen::Matrix3d covariance = Eigen::Vector3d(1.0, 0.04, 0.01).asDiagonal();
   const std::vector<Eigen::Matrix3d> covariances = {covariance, Eigen::Matrix3d::Zero()};

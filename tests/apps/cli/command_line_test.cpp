@@ -180,7 +180,7 @@ TEST_F(CommandLineTest, AMistypedOptionNamesTheNearestOne) {
   EXPECT_THAT(suggestion("--hlep"), HasSubstr("did you mean --help?"));
   EXPECT_EQ(suggestion("--temperature"),
             "there is no option '--temperature' (see paint wall --help)");
-  // The option is wrong whatever else is missing.
+  // The wrong option is reported first, although an argument is missing too.
   EXPECT_THAT(UsageErrorOf(program_, {"floors", "--uot", "x"}), HasSubstr("did you mean --out?"));
 }
 

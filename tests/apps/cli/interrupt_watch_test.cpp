@@ -21,7 +21,7 @@ void PollUntil(const std::function<bool()>& condition) {
   while (!condition()) std::this_thread::sleep_for(1ms);
 }
 
-/// Sends a signal to this process and waits until the watch has taken it.
+/// Sends a signal to this process and waits until the watch has received it.
 void SendAndWait(int signal) {
   kill(getpid(), signal);
   PollUntil([signal] {
@@ -62,7 +62,7 @@ TEST(InterruptWatchDeathTest, TheSameSignalTwiceWithinASecondIsOne) {
     SendAndWait(SIGTERM);
     watched.WaitForCalls(1);
     SendAndWait(SIGTERM);
-    SendAndWait(SIGINT);  // another one is not the same
+    SendAndWait(SIGINT);  // another signal, so it is not ignored
     WaitForEnd();
   };
   EXPECT_EXIT(program(), ExitedWithCode(128 + SIGINT), "");
@@ -86,7 +86,7 @@ TEST(InterruptWatchDeathTest, OnlyAnotherSignalBreaksOffTheLastHandler) {
     watched.WaitForCalls(1);
     SendAndWait(SIGTERM);
     watched.WaitForCalls(2);
-    SendAndWait(SIGTERM);  // would kill if it were taken for another
+    SendAndWait(SIGTERM);  // ignored, because it is the same one
     SendAndWait(SIGHUP);
     WaitForEnd();
   };

@@ -10,7 +10,7 @@
 namespace loopgrid {
 namespace {
 
-/// By the definition, without a table.
+/// Computed by the recursive definition.
 std::size_t SlowDistance(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   const std::string a1 = a.substr(1);

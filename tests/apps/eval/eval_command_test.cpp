@@ -1,4 +1,4 @@
-// `loopgrid eval` as its user meets it. The metrics themselves are tested in tests/frontend.
+// The command `loopgrid eval`. The metrics are tested in tests/frontend.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -44,8 +44,8 @@ class EvalCommandTest : public ::testing::Test {
 };
 
 TEST_F(EvalCommandTest, KnowsRelationsByTheirContent) {
-  // The first one is met exactly; the second one is half a metre and 0.1 radians off; of the third
-  // and fourth one a time lies between and outside of the poses.
+  // The first relation fits exactly. The second has an error of half a metre and 0.1 radians. A
+  // time of the third is between two poses, and a time of the fourth is outside the trajectory.
   const std::string relations =
       "10 11 1 0 0 0 0 0\n"
       "10 12 2.5 0 0 0 0 0.1\n"
@@ -66,7 +66,7 @@ TEST_F(EvalCommandTest, KnowsRelationsByTheirContent) {
 }
 
 TEST_F(EvalCommandTest, KnowsATrajectoryByItsContentAndAlignsIt) {
-  // The same way, elsewhere and turned by 90 degrees.
+  // The same path at another place, turned by 90 degrees.
   const std::string reference =
       "10 5 5 0 0 0 0.70710678 0.70710678\n"
       "11 5 6 0 0 0 0.70710678 0.70710678\n"
@@ -83,7 +83,7 @@ TEST_F(EvalCommandTest, KnowsATrajectoryByItsContentAndAlignsIt) {
 }
 
 TEST_F(EvalCommandTest, TakesCoarselyRoundedQuaternionsForQuaternions) {
-  // Their norm is 0.99, less than a rounding error from 1; they were once taken for relations.
+  // Their norm is 0.99 because of rounding. An older version took them for relations.
   const std::string reference =
       "10 5 5 0 0 0 0.7 0.7\n"
       "11 5 6 0 0 0 0.7 0.7\n"
@@ -108,7 +108,7 @@ TEST_F(EvalCommandTest, SaysWhatIsComparedWithWhat) {
 }
 
 TEST_F(EvalCommandTest, CanBeToldWhatTheReferenceIs) {
-  // A trajectory by its look, but also two relations with a yaw of 1.
+  // Looks like a trajectory, but can also be two relations with a yaw of 1.
   const std::string both = "10 11 1 0 0 0 0 1\n11 12 1 0 0 0 0 1\n";
   EXPECT_EQ(json::parse(Eval(both, {"--json"}).output)["metric"], "trajectory");
   const json relations = json::parse(Eval(both, {"--json", "--relations"}).output);
@@ -129,7 +129,7 @@ TEST_F(EvalCommandTest, AReferenceThroughAPipeGivesTheSameAsAFile) {
   EXPECT_EQ(expected["exact"]["count"], 1000);
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
-  // All of it fits into the pipe's buffer, so that nobody has to read yet.
+  // All of it fits into the pipe's buffer, so write() does not wait for a reader.
   ASSERT_EQ(write(ends[1], relations.data(), relations.size()), std::ssize(relations));
   close(ends[1]);
   const ProgramResult result = RunProgram({"eval", estimate_, "/dev/stdin", "--json"},

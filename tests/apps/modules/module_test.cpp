@@ -32,7 +32,7 @@ using ::testing::ThrowsMessage;
 const std::string kRawlog =
     test_support::MrptDataset("2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog");
 
-/// A program without the modules that belong to it.
+/// A copy of the program without its modules.
 class LonelyProgram {
  public:
   LonelyProgram() { fs::copy_file(LOOPGRID_PROGRAM, folder_.File("loopgrid")); }

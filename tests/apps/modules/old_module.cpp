@@ -1,4 +1,4 @@
-// A module of a version that never was.
+// A module of another version.
 extern "C" {
 
 extern const char loopgrid_module_version[];

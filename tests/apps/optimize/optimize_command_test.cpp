@@ -1,4 +1,4 @@
-// `loopgrid optimize` as its user meets it.
+// The command `loopgrid optimize`.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -345,7 +345,7 @@ TEST_F(OptimizeCommandTest, OptionsThatContradictEachOtherAreUsageErrors) {
 TEST_F(OptimizeCommandTest, OutputsAreTriedBeforeAnythingIsDone) {
   ExpectRefusal({"--out", out_, "--trace", folder_.File("none/trace.csv")}, "none/trace.csv: ", 4);
   ExpectRefusal({"--out", folder_.File("")}, "is a directory", 4);
-  // The covariances do not exist, which is found out last; nothing is left then either.
+  // The covariances do not exist. This is found at the end, and no file is left.
   WriteFile(graph_, "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 0\n");
   ExpectRefusal({"--out", out_, "--marginals", folder_.File("cov.csv")},
                 "square.g2o: there are no covariances", 3);

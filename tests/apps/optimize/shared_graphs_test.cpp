@@ -1,5 +1,5 @@
 // `loopgrid optimize` on public graphs with known optima, from the starts in the files. They are
-// not part of the project: the environment variable LOOPGRID_DATA says where they are.
+// not part of the project. The environment variable LOOPGRID_DATA names their folder.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// `loopgrid plot` as its user meets it.
+// The command `loopgrid plot`.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// `loopgrid replay` as its user meets it.
+// The command `loopgrid replay`.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ std::string Scan(double time) {
   return fmt::format("FLASER 1 5 0 0 0 0 0 0 {} h {}\n", time, time);
 }
 
-// What a reader of logs would tidy up: line ends, a mark, garbage, a line without its end.
+// A log that readers would change: line ends, a byte order mark, garbage, a line without its end.
 const std::string kAwkwardLog = "\xEF\xBB\xBF# a log\r\n\n" + Scan(100) + "ODOM 1 2 3\n" +
                                 Scan(100.001) + "\t \xFF\xFE\n" + Scan(50) + "FLASER oh\r\nlast";
 

@@ -28,10 +28,10 @@ using test_support::World;
 
 double TimeOf(std::size_t node) { return 100.0 + 0.5 * static_cast<double>(node); }
 
-// Finder and verifier as the pipeline uses them.
+// Finder and verifier together, as the pipeline uses them.
 class ProposeAndVerify {
  public:
-  // The closures of the newest node of the walk that are believed.
+  // The closures that are verified at the newest node of the walk.
   std::vector<ClosureId> Close(Walk* walk) {
     const auto newest = static_cast<std::size_t>(walk->nodes().size() - 1);
     const std::vector<Closure> proposed = finder_.Propose(walk->nodes(), Session(), TimeOf(newest),
@@ -43,7 +43,7 @@ class ProposeAndVerify {
     return verifier_.Verify(walk->nodes(), false, &closures_);
   }
 
-  // Closes loops at every node of a walk; ends at the first closures that are believed.
+  // Closes loops at every node of a walk. Ends at the first closures that are verified.
   std::vector<ClosureId> CloseAlong(const std::vector<SE2>& truth,
                                     const std::vector<PointScan>& scans, double sigma, Walk* walk) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -78,7 +78,7 @@ std::vector<PointScan> ScansOf(const World& world, const std::vector<SE2>& poses
   return scans;
 }
 
-// A room that DistinctiveRoom() cannot be taken for.
+// A room that does not look like DistinctiveRoom().
 World OtherRoom() {
   World world;
   world.AddBox({0.0, 0.0}, {5.2, 5.0}, 0.4);
@@ -106,7 +106,8 @@ TEST(ClosureFinder, ProposesClosuresThatAgreeWithTheTruth) {
 }
 
 TEST(ClosureFinder, OneLookAlikeIsNotBelieved) {
-  // From its 18th node on the robot is in another room; it ends before that could be seen again.
+  // From its 18th node on the robot is in another room. The walk ends before it sees that room
+  // again.
   const std::vector<SE2> truth = RoundWalk(37);
   std::vector<PointScan> scans = ScansOf(DistinctiveRoom(), truth);
   const std::vector<PointScan> elsewhere = ScansOf(OtherRoom(), truth);
@@ -146,7 +147,8 @@ TEST(ClosureFinder, LeavesOpenWhatABareCorridorLeavesOpen) {
   const std::vector<SE2> truth = UpAndDown();
   Walk walk;
   ProposeAndVerify closer;
-  // Poses so sure that the windows are narrow: no second place can be seen, only the score's shape.
+  // The poses are so certain that the search windows are narrow. They contain no second place, so
+  // only the shape of the score can show that the match is not unique.
   EXPECT_TRUE(
       closer.CloseAlong(truth, ScansOf(BareCorridor(), truth, ExactLaser(360)), 0.002, &walk)
           .empty());
@@ -173,7 +175,7 @@ TEST(ClosureFinder, BearsNodesWithoutHits) {
 }
 
 TEST(ClosureFinder, LooksEverywhereForASessionThatIsNotLocalized) {
-  // One round, then the robot is put down elsewhere in the room: its pose in the graph is wrong.
+  // After one round the robot is put down elsewhere in the room, so its pose in the graph is wrong.
   const std::vector<SE2> truth = RoundWalk(kNodesARound);
   Walk walk;
   walk.Follow(DistinctiveRoom(), truth);

@@ -23,8 +23,8 @@ void AddSquare(Walk* walk, int nodes) {
   }
 }
 
-// Whether some motion of the old node inside its gate brings it within view of the newest, tried
-// out on the border of the gate.
+// Whether some motion of the old node inside its gate brings it within view of the newest node.
+// Tries motions on the border of the gate.
 bool IsInsideByTrial(const SE2& T_old_newest, const Eigen::Matrix3d& covariance,
                      const ClosureGateOptions& options) {
   const Eigen::Vector2d p = T_old_newest.translation();

@@ -28,7 +28,7 @@ std::vector<ClosureConstraint> Numbered(const std::vector<Constraint<SE2>>& cons
   return closures;
 }
 
-// Where the nodes of RandomGraph(nodes, 0, seed) were before noise, but for its few per cent.
+// Adds the nodes `from` to `to` - 1 of a chain, each at the measured pose from the one before.
 void AddChain(const PoseGraph<SE2>& chain, int from, int to, ClosureGraph* graph) {
   for (int i = from; i < to; ++i) {
     if (i == 0) {
@@ -41,7 +41,7 @@ void AddChain(const PoseGraph<SE2>& chain, int from, int to, ClosureGraph* graph
   }
 }
 
-// A closure that says what the chain says, but for its own small noise.
+// A closure that agrees with the chain, with a small noise of its own.
 Constraint<SE2> TrueClosure(const PoseGraph<SE2>& chain, int from, int to, unsigned seed) {
   std::mt19937 random(seed);
   Constraint<SE2> closure = NoisyConstraint(chain.poses, from, to, &random);
@@ -55,7 +55,7 @@ Constraint<SE2> FalseClosure(const PoseGraph<SE2>& chain, int from, int to, unsi
   return closure;
 }
 
-// Chains whose steps are sure enough to speak against a wrong closure.
+// Chains whose steps are certain enough to contradict a wrong closure.
 PoseGraph<SE2> Chain(int nodes, unsigned seed) {
   PoseGraph<SE2> chain = RandomGraph(nodes, 0, seed);
   for (Constraint<SE2>& step : chain.constraints) step.information *= 100.0;
@@ -136,7 +136,7 @@ TEST(ClosureGraph, LeavesOutAWrongClosureAndReturnsExactly) {
     EXPECT_FALSE(graph.TryClosures(Numbered({FalseClosure(chain, 2, 39, seed)})));
     ExpectSamePoses(graph.graph().poses, before.poses);
     EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size());
-    // It takes nothing with it.
+    // No other closure was removed with it.
     EXPECT_TRUE(graph.TryClosures(Numbered({TrueClosure(chain, 6, 37, seed + 2)})));
     EXPECT_EQ(graph.graph().constraints.size(), before.constraints.size() + 1);
   }
@@ -163,7 +163,7 @@ TEST(ClosureGraph, OfThreeRightAndAWrongClosureKeepsTheRightOnes) {
 TEST(ClosureGraph, AWrongClosureGivesWayToTheRightOnesThatComeLater) {
   const PoseGraph<SE2> chain = Chain(40, 31);
   ClosureGraph graph;
-  // Nothing speaks against it yet: its own part of the chain is loose.
+  // Nothing contradicts it yet, because its part of the chain is uncertain.
   AddChain(chain, 0, 40, &graph);
   Constraint<SE2> wrong = TrueClosure(chain, 3, 30, 31);
   wrong.T_from_to = wrong.T_from_to * SE2(0.6, 0.4, 0.1);
@@ -197,7 +197,7 @@ TEST(ClosureGraph, SettleTakesOutThePlantedOutlierAmongGoodLinks) {
       EXPECT_EQ(std::count(removed.begin(), removed.end(), kept.id), 0);
       EXPECT_EQ(kept.constraint.from, kept.id - 100);  // ids stay with their constraints
     }
-    EXPECT_LE(removed.size(), 5U);  // it may take some that it pulled hard with it
+    EXPECT_LE(removed.size(), 5U);  // some that it has pulled off may be removed too
     EXPECT_EQ(graph.graph().constraints.size(), 49U + 20U - removed.size());
     for (int i = 0; i < 50; ++i) {
       EXPECT_LT(graph.graph().poses[Index(i)].Boxminus(chain.poses[Index(i)]).norm(), 0.3) << i;

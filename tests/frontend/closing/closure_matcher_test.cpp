@@ -64,7 +64,7 @@ TEST(MatchClosure, SeesThatAPlaceLooksLikeAnotherOne) {
   const PointScan scan = ScanFrom(square, truth);
   const ClosureMatch match = Match(map, scan, truth, {2.0, 2.0, 2.0});
   ASSERT_TRUE(match.found);
-  EXPECT_GT(match.second_score, 0.75 * match.score);  // less what falls between the cells
+  EXPECT_GT(match.second_score, 0.75 * match.score);  // less because hits fall between cells
   EXPECT_LE(match.second_score, match.score);
 }
 
@@ -101,12 +101,12 @@ TEST(MatchClosure, KeepsToItsLimits) {
   options.min_inlier_share = 1.1;
   EXPECT_FALSE(Match(map, scan, truth, {0.2, 0.2, 0.1}, options).found);
   options = {};
-  options.widest = 0.1;  // a window as wide as the plane is searched no wider than this
+  options.widest = 0.1;  // windows are not searched farther than this
   EXPECT_TRUE(Match(map, scan, truth, {1e9, 1e9, 1e9}, options).found);
 }
 
 TEST(MatchClosure, SearchesLargeWindowsWithTheSurroundings) {
-  // One scan of a corner looks like any corner; with the rest of the room there is one place only.
+  // One scan of a corner fits every corner. With the rest of the room it fits one place only.
   const LocalMap map = MapFrom(DistinctiveRoom(), kMapPoses);
   const SE2 truth(-2.0, -1.5, -2.4);
   SimulatedLaser narrow = ExactLaser(180);

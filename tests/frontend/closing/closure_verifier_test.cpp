@@ -14,7 +14,7 @@ using test_support::kNodesARound;
 using test_support::RoundWalk;
 using test_support::Walk;
 
-// Twice round, without scans: only poses matter here.
+// Two rounds without scans, because only poses matter here.
 class ClosureVerification : public ::testing::Test {
  protected:
   ClosureVerification() {
@@ -26,7 +26,8 @@ class ClosureVerification : public ::testing::Test {
 
   const Nodes& nodes() const { return walk_.nodes(); }
 
-  // A closure between the passes by one place, off by `error`, as the finder proposes it.
+  // A closure between the two passes by one place, with the error `error`, as the finder proposes
+  // it.
   ClosureId Propose(int to, const SE2& error = SE2()) {
     Closure closure;
     closure.from = to - kNodesARound;

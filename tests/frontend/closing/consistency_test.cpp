@@ -32,7 +32,7 @@ double MeanAgreement(const Eigen::MatrixXd& agreement, const Members& members) {
 TEST(FindConsistentSet, FindsTheLargerOfTwoGroups) {
   const ConsistentSet set = FindConsistentSet(Groups(7, {{0, 2, 4, 6}, {1, 3, 5}}));
   EXPECT_EQ(set.members, (Members{0, 2, 4, 6}));
-  EXPECT_NEAR(set.separation, 3.4 / 2.6, 1e-9);  // 1 + (n - 1) * 0.8 are the eigenvalues
+  EXPECT_NEAR(set.separation, 3.4 / 2.6, 1e-9);  // the eigenvalues are 1 + (n - 1) * 0.8
 }
 
 TEST(FindConsistentSet, LeavesOutOneThatAgreesWithNone) {

@@ -22,7 +22,8 @@ using test_support::Walk;
 TEST(LinkNeighbours, JoinsThePassesByOnePlaceWhereTheyReallyAre) {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
   Walk walk;
-  walk.Follow(DistinctiveRoom(), truth, SE2(0.002, 0.001, 0.0003));  // off by 5 cm a round
+  walk.Follow(DistinctiveRoom(), truth,
+              SE2(0.002, 0.001, 0.0003));  // an error of 5 cm for each round
   const std::vector<Constraint<SE2>> links = LinkNeighbours(walk.nodes());
   EXPECT_GE(links.size(), 30U);
   std::vector<int> linked;

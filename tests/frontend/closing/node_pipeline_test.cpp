@@ -22,7 +22,7 @@ TEST(NodePipeline, TellsOfEachClosureWhatItHasBecome) {
       EXPECT_GT(closure.id, last);
       last = closure.id;
       const auto place = static_cast<std::size_t>(closure.id);
-      ASSERT_LE(place, told.size());  // in order, none left out
+      ASSERT_LE(place, told.size());  // in order, and none is missing
       if (place == told.size()) told.emplace_back();
       told[place] = closure;
     }
@@ -31,7 +31,7 @@ TEST(NodePipeline, TellsOfEachClosureWhatItHasBecome) {
   const GraphUpdate last = pipeline.Finish();
   listen(last);
   ASSERT_FALSE(told.empty());
-  // Those accepted are those in the graph, with their error there.
+  // The accepted closures are those in the graph, with their chi2 there.
   const PoseGraph<SE2>& graph = last.optimized->graph;
   int accepted = 0;
   for (const Closure& closure : told) {
@@ -70,7 +70,7 @@ TEST(NodePipeline, ANodeMayBeJoinedToAnyOther) {
   EXPECT_EQ(optimized.graph.constraints[11].to, 12);
   const SE2 step = optimized.graph.poses[4].Inverse() * optimized.graph.poses[12];
   EXPECT_LT(step.Boxminus(branch.T_parent_node).norm(), 1e-6);
-  // Node 4 is one step away from it, node 11 seven steps and that.
+  // Node 4 is one step away from it, and node 11 seven more steps.
   EXPECT_TRUE(optimized.relative_covariances[4].isApprox(
       branch.T_parent_node.Adjoint() * branch.covariance *
           branch.T_parent_node.Adjoint().transpose(),

@@ -58,7 +58,7 @@ TEST(NodeQueue, GivesTheSameUpdatesWithAndWithoutAThreadHoweverLateTheyAreTaken)
   ASSERT_TRUE(last.optimized);
   ExpectSameUpdates(threaded.Finish(), last);
   ExpectSameUpdates(deferred.Finish(), last);
-  // There was something to compare.
+  // Make sure that there was something to compare.
   EXPECT_TRUE(std::any_of(expected.begin(), expected.end(),
                           [](const GraphUpdate& update) { return update.optimized.has_value(); }));
 }

@@ -49,7 +49,7 @@ TEST_F(NodesOnALine, AroundEndsWhereTheTravelWouldBeTooLong) {
   expect(2, 1.9, 0, 2);
   expect(2, 2.0, 0, 4);
   expect(2, 99.0, 0, 5);
-  expect(3, 0.0, 3, 4);  // where the robot stood still
+  expect(3, 0.0, 3, 4);  // the robot stood still there
   expect(0, 1.0, 0, 1);
   expect(5, 0.5, 3, 5);
 }
@@ -73,7 +73,7 @@ TEST(Nodes, AGapIsAsLongAsItIsSaidToBe) {
   test_support::Walk walk;
   for (int i = 0; i < 4; ++i) walk.Add(SE2(1.0, 0.0, 0.0), PointScan());
   Nodes nodes = walk.nodes();
-  nodes.gaps[2] = 7.5;  // the robot came to node 2 on another way than from node 1
+  nodes.gaps[2] = 7.5;  // the robot did not come to node 2 from node 1
   EXPECT_DOUBLE_EQ(nodes.StepLength(1), 7.5);
   EXPECT_DOUBLE_EQ(nodes.StepLength(2), 1.0);
   EXPECT_DOUBLE_EQ(nodes.PathLength(0, 3), 9.5);

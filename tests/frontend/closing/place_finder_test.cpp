@@ -21,7 +21,7 @@ using test_support::ScanFrom;
 using test_support::Walk;
 using test_support::World;
 
-// Coarser than in use, for speed: the room is small and every scan sees most of it.
+// Coarser than the defaults, to be faster. The room is small, and every scan sees most of it.
 ClosureMatcherOptions Coarse() {
   ClosureMatcherOptions options;
   options.coarse_points = 100;

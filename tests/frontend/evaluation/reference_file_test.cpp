@@ -29,7 +29,7 @@ ReferenceKind GuessOf(const std::string& text) {
 TEST(GuessReferenceKind, KnowsTrajectoriesWithRoundedQuaternions) {
   const char* trajectories[] = {
       "10 0 0 0 0 0 0.7 0.7\n",                                      // norm 0.99
-      "10 0 0 0 0 0 0 1\n11 1 0 0 0 0 0 -1\n",                       // does not turn
+      "10 0 0 0 0 0 0 1\n11 1 0 0 0 0 0 -1\n",                       // no rotation
       "10 0 0 0 0 0 0 1.001\n11 0 0 0 0 0 .1 1\n",                   // rounded
       "10 0 0 1 0.5 0.5 0.5 0.5\n",                                  // in space
       "10 0 0 0 0 0 0.7 0.7\n11 0 0 0 0 0 1 0\n12 0 0 0 0 0 0 0\n",  // the last one is broken

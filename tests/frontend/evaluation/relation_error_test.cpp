@@ -47,7 +47,7 @@ TEST(EvaluateRelations, APerfectTrajectoryHasNoErrorInAnyFrame) {
 TEST(EvaluateRelations, TheErrorIsTheDifferenceOfTheComponents) {
   const Trajectory trajectory = {{0.0, SE2(5.0, 5.0, 1.0)},
                                  {1.0, SE2(5.0, 5.0, 1.0) * SE2(1.0, 2.0, 3.1)}};
-  // Not the size of the relative motion between the two: the given angle does not turn (dx, dy).
+  // The error is the difference of the components. The given angle does not rotate (dx, dy).
   const std::vector<Relation> relations = {{0.0, 1.0, SE2(1.3, 1.6, -3.1)}};
   const RelationEvaluation evaluation = EvaluateRelations(trajectory, relations);
   ASSERT_EQ(evaluation.errors.size(), 1U);
@@ -96,7 +96,7 @@ TEST(EvaluateRelations, WithoutRelationsOrPosesThereIsNothing) {
   EXPECT_EQ(EvaluateRelations({}, relations).outside, 2U);
 }
 
-// A solution that others published has errors that others published too.
+// A published solution has the errors that were published for it.
 TEST(EvaluateRelations, JudgesPublishedSolutionsAsPublished) {
   LOOPGRID_REQUIRE_RECORDING(intel_relations, "logs/intel-exact.relations");
   LOOPGRID_REQUIRE_RECORDING(intel_reference, "logs/intel.reference.tum");

@@ -14,7 +14,7 @@ struct WholeLog {
   LogStatistics statistics;
 };
 
-/// All that OpenLog() gives out of a file.
+/// Everything that OpenLog() reads from a file.
 inline WholeLog ReadWholeLog(const std::string& path, const LogReaderOptions& options = {}) {
   WholeLog log;
   const auto reader = OpenLog(path, options);
@@ -24,7 +24,7 @@ inline WholeLog ReadWholeLog(const std::string& path, const LogReaderOptions& op
   return log;
 }
 
-/// The same of bytes.
+/// The same for bytes.
 inline WholeLog ReadWholeLogFrom(std::string_view content, const LogReaderOptions& options = {}) {
   const MemoryFile file(content);
   return ReadWholeLog(file.path(), options);

@@ -1,4 +1,4 @@
-// The readers on real recordings, where they are at hand.
+// The readers on real recordings, if these are available.
 
 #include <gtest/gtest.h>
 
@@ -57,8 +57,8 @@ TEST(RecordedLogs, TheIntelRawlogIsTheSameRunAsTheLog) {
   LOOPGRID_REQUIRE_RECORDING(rawlog_path, "logs/intel-every5.rawlog");
   const WholeLog log = ReadWholeLog(log_path);
   const WholeLog rawlog = ReadWholeLog(rawlog_path);
-  // The rawlog holds every 5th scan of the full run, the log two thirds of it: in their common
-  // order, most of the rawlog's scans must be there beam for beam, where they are returns.
+  // The rawlog has every 5th scan of the full run, and the log has two thirds of its scans. So most
+  // of the rawlog's scans must be in the log, in the same order and with the same returns.
   const auto same = [](const Observation& raw, const Observation& full) {
     for (std::size_t i = 0; i < raw.scan.ranges.size(); ++i) {
       const bool no_return = raw.scan.ranges[i] >= raw.scan.max_range;

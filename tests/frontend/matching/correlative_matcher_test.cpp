@@ -1,4 +1,4 @@
-// The branch-and-bound against trying every candidate, on many random worlds.
+// Compares branch and bound with trying every candidate, in many random worlds.
 
 #include "frontend/matching/correlative_matcher.h"
 
@@ -62,7 +62,8 @@ MatchPoints RandomWalls(std::mt19937* random) {
   return points;
 }
 
-// Reference points and some of them seen from near the window's centre, with strays among them.
+// Reference points, and some of them seen from near the window's centre, with wrong points among
+// them.
 Problem RandomProblem(unsigned seed) {
   std::mt19937 random(seed);
   const SearchWindow window{OneOf({0.0, 0.05, 0.12, 0.33, 0.7}, &random),
@@ -100,7 +101,7 @@ struct Excluded {
   }
 };
 
-// Every candidate in the order of the documented rule; the first of the best.
+// Tries every candidate in the documented order. Returns the first of the best.
 SearchResult TryAll(const CorrelativeSearch& search, double min_score,
                     const Excluded& excluded = {}) {
   SearchResult best;
@@ -178,7 +179,7 @@ TEST(CorrelativeSearch, GivesTheFirstByAngleThenYThenXOfEqualCandidates) {
     EXPECT_EQ(search.BestAwayFrom(first.offset, 0, 0, 0.5).offset, (SearchOffset{-5, -4, -3}));
     EXPECT_EQ(search.BestAwayFrom(first.offset, 20, 0, 0.5).offset, (SearchOffset{-6, -4, -2}));
     EXPECT_EQ(search.BestAwayFrom(first.offset, 2, 20, 0.5).offset, (SearchOffset{-3, -4, -3}));
-    // The least prior decides among equals.
+    // Even a small prior decides between equal candidates.
     const CorrelativeSearch guided(full, points, SE2(), window, 0.02, {0.1, 0.1, 0.1});
     EXPECT_EQ(guided.Best(0.5).offset, SearchOffset{});
   }

@@ -64,7 +64,7 @@ TEST(LikelihoodTable, LevelsHoldTheMaximaOfTheCellsThatBeginThere) {
   for (unsigned seed = 20; seed < 26; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    // Also tables that are narrower than the cells of their upper levels.
+    // Some tables are narrower than the cells of their upper levels.
     const float height = seed % 2 == 0 ? 0.1F : 2.0F;
     const LikelihoodTable table(RandomPoints(15, 1.5F, &random), {-1.0F, 0.0F}, {1.3F, height}, 4,
                                 0.1F, 0.1F, 6);

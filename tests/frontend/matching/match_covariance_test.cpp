@@ -35,7 +35,7 @@ LikelihoodTable TableOf(const Points& reference, float resolution, float sigma) 
   return {reference, lower, upper, margin, resolution, sigma, 1};
 }
 
-// A scan matched in its place, with what its covariance is computed from.
+// A scan matched at its true pose, and the inputs of its covariance.
 struct Matched {
   LocalMap map;
   LikelihoodTable table;
@@ -73,7 +73,7 @@ TEST(ScoreInformation, IsSymmetricAndPositiveSemiDefinite) {
     const SE2 truth{random.Uniform(-2.0, 1.0), random.Uniform(-2.0, 0.5), random.Uniform(-3, 3)};
     const World world = seed % 3 == 0 ? BareCorridor(8.0) : DistinctiveRoom();
     const Matched m = MatchIn(world, truth, SimulatedLaser{});
-    Eigen::Matrix3d odd = Eigen::Matrix3d::Zero();  // any shape may be asked for
+    Eigen::Matrix3d odd = Eigen::Matrix3d::Zero();  // every shape is allowed
     odd.diagonal() << random.Uniform(0.0, 1e6), random.Uniform(0.0, 1.0), random.Uniform(0, 1e3);
     for (const Eigen::Matrix3d& shape : {Shape(m), odd, Eigen::Matrix3d(Eigen::Matrix3d::Zero())}) {
       const Eigen::Matrix3d information = ScoreInformation(m.table, m.scan.hits, truth, shape);
@@ -84,7 +84,8 @@ TEST(ScoreInformation, IsSymmetricAndPositiveSemiDefinite) {
   }
 }
 
-// The definition: moments of exp(score) over a lattice so fine and wide that it leaves nothing out.
+// The definition: moments of exp(score) over a lattice that is fine and wide enough for the whole
+// peak.
 Eigen::Matrix3d InformationBySumming(const LikelihoodTable& table, const Points& points,
                                      const Eigen::Vector3d& sigmas, double hit_log_likelihood) {
   constexpr int kHalf = 12;
@@ -134,7 +135,8 @@ TEST(ScoreInformation, IsCloseToThatOfAFineLatticeOnASmoothScore) {
     const Eigen::Matrix3d information =
         ScoreInformation(table, points, SE2(), shape.asDiagonal(), options);
     const Eigen::Vector3d ratio = information.diagonal().cwiseQuotient(expected.diagonal());
-    // Its few points reach 2.7 sigmas: it knows less than all, but more than half of it.
+    // Its few points reach 2.7 sigmas, so it has less information than the definition, but more
+    // than half.
     EXPECT_GT(ratio.minCoeff(), 0.5) << ratio.transpose();
     EXPECT_LT(ratio.maxCoeff(), 1.0) << ratio.transpose();
   }
@@ -166,12 +168,12 @@ TEST(MatchCovariance, IsPositiveDefiniteAndSmallInADistinctiveRoom) {
     const Eigen::Matrix3d covariance = MatchIn(DistinctiveRoom(), truth, all_around).Covariance();
     EXPECT_EQ(covariance, covariance.transpose());
     EXPECT_GT(Eigenvalues(covariance)(0), 0.0);
-    EXPECT_LT(std::sqrt(Eigenvalues(covariance)(2)), 0.03);  // a good match is known to be one
+    EXPECT_LT(std::sqrt(Eigenvalues(covariance)(2)), 0.03);  // a good match has a small covariance
   }
 }
 
 TEST(MatchCovariance, TurnsWithTheRobotsFrame) {
-  // The same scan in the same room, told in the frame of a robot that is turned and shifted.
+  // The same scan in the same room, in the frame of a robot that is turned and shifted.
   const SE2 truth(0.3, -0.4, 0.2);
   const Matched m = MatchIn(DistinctiveRoom(), truth, ExactLaser(360));
   const Eigen::Matrix3d covariance = m.Covariance();
@@ -184,7 +186,7 @@ TEST(MatchCovariance, TurnsWithTheRobotsFrame) {
     const RefinedMatch match = RefineMatch(m.map, scan, pose, {pose, Eigen::Matrix3d::Zero()});
     const Eigen::Matrix3d other = MatchCovariance(m.table, scan.hits, match);
     const Eigen::Matrix3d A = T_robot_other.Adjoint();
-    // The lattice meets other cells, and from elsewhere it has other axes.
+    // The lattice falls on other cells, and from another place it has other axes.
     const double tolerance = T_robot_other.translation().isZero() ? 1.25 : 2.0;
     const Eigen::Matrix3d back = A * other * A.transpose();
     const Eigen::Vector3d ratio = back.diagonal().cwiseQuotient(covariance.diagonal());

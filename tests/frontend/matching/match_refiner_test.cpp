@@ -47,7 +47,7 @@ TEST(RefineMatch, RecoversADisplacedPoseToAMillimetre) {
   }
 }
 
-// The cost that the refiner promises to minimise, with the surfaces that are nearest at `solution`.
+// The cost that the refiner minimises, with the surfaces that are nearest at `solution`.
 double Cost(const LocalMap& map, const PointScan& scan, const SE2& solution, const SE2& pose,
             const PosePrior& prior, const RefinerOptions& options) {
   double cost = 0.0;
@@ -89,7 +89,7 @@ TEST(RefineMatch, EndsWhereTheNumericGradientOfTheCostVanishes) {
                     2e-5;
     }
     const Eigen::Matrix3d H = match.information + prior.information;
-    const Eigen::Vector3d away = H.ldlt().solve(gradient);  // how far the minimum is
+    const Eigen::Vector3d away = H.ldlt().solve(gradient);  // the distance to the minimum
     EXPECT_LT(away.head<2>().norm(), 6e-4);
     EXPECT_LT(std::abs(away.z()), 4e-4);
   }

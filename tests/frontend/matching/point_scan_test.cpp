@@ -108,7 +108,7 @@ TEST(MakePointScan, NormalsStandOnAStraightWallAndFaceTheLaser) {
         ++with_normal;
         ASSERT_NEAR((points.normals[i] - expected).norm(), 0.0, 2e-3);
       }
-      EXPECT_GE(with_normal, 130);  // all but the most grazing
+      EXPECT_GE(with_normal, 130);  // all except the most grazing beams
     }
   }
 }
@@ -141,7 +141,7 @@ TEST(MakePointScan, LonePointsAndPairsHaveNoNormal) {
 }
 
 TEST(MakePointScan, NoNormalIsTakenAcrossAGap) {
-  // Every other point is 2 m behind: no two neighbours belong together.
+  // Every other point is 2 m behind, so no two neighbours belong to one surface.
   std::vector<float> ranges;
   for (int i = 0; i < 180; ++i) ranges.push_back(i % 2 == 0 ? 2.0F : 4.0F);
   for (const Eigen::Vector2f& normal : MakePointScan(BeamScanOf(ranges), 0.05, 40.0).normals) {

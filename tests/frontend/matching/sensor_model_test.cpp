@@ -22,7 +22,7 @@ using test_support::World;
 
 constexpr double kPi = std::numbers::pi;
 
-// A scan of the room's walls where `missing` beams say one of `values` instead.
+// A scan of the room's walls. `missing` of its beams read one of `values` instead.
 LaserScan RoomScan(const std::vector<float>& values, int missing, PortableRandom* random,
                    int beams = 180) {
   SimulatedLaser laser;
@@ -86,7 +86,7 @@ TEST(SensorModel, LearnsTheEightMetresOfAnLms200InMillimetreMode) {
     PortableRandom random(seed);
     SensorModel sensor;
     for (int k = 0; k < 10; ++k) {
-      // In a room of 5 m: what is farther does not return.
+      // In a room of 5 m; beams that go farther do not return.
       LaserScan scan = RoomScan({8.191F}, 40, &random);
       for (float& range : scan.ranges) range = range > 5.5F ? 8.191F : range;
       EXPECT_LT(Farthest(sensor.Interpret(scan)), 6.0F);
@@ -112,12 +112,12 @@ TEST(SensorModel, TakesTheLogsMaximumRangeWhereItIsLower) {
 TEST(SensorModel, IsNotMisledByALogThatStatesTooLargeARange) {
   PortableRandom random(4);
   LaserScan scan = RoomScan({32.77F}, 30, &random);
-  scan.max_range = 50.0;  // many logs say so, whatever the readings
+  scan.max_range = 50.0;  // many logs state this value, for all lasers
   EXPECT_LT(Farthest(SensorModel().Interpret(scan)), 12.0F);
 }
 
 TEST(SensorModel, KeepsTheWallsOfRoomsOfAnySizeOrShape) {
-  // All readings of the very first scan lie close together: no reason to call them no-returns.
+  // All readings of the first scan are nearly equal. They must not be taken for no-returns.
   for (double half = 0.4; half < 9.0; half += 0.1) {
     SCOPED_TRACE(half);
     World square;
@@ -140,7 +140,7 @@ TEST(SensorModel, KeepsTheEndOfALongCorridorOnceTheRobotHasMovedAMetre) {
   SensorModel sensor;
   for (int k = 0; k < 10; ++k) {
     const LaserScan scan = SimulateScan(corridor, SE2(0.2 * k, 0.0, 0.01 * k), laser, &random);
-    // Seen from one place alone, the end makes a heap like that of a no-return value.
+    // From one place alone, the end of the corridor makes a heap like that of a no-return value.
     const PointScan points = sensor.Interpret(scan);
     if (k >= 1 && k <= 3) {
       EXPECT_LT(points.size(), 180U);

@@ -22,7 +22,7 @@ TEST(ThinPoints, KeepsConsecutivePointsApartAndDropsNoneThatAreFar) {
   for (float spacing : {0.02F, 0.05F, 0.3F}) {
     const ThinnedPoints kept = ThinPoints(points, spacing);
     EXPECT_EQ(kept.front(), points.front());
-    auto next = kept.begin();  // in order, and each dropped point close to the last one kept
+    auto next = kept.begin();  // in order; each dropped point is close to the last one kept
     for (const Eigen::Vector2f& p : points) {
       if (next != kept.end() && p == *next) {
         const float gap = next == kept.begin() ? spacing : (*next - *(next - 1)).norm();

@@ -59,7 +59,7 @@ TEST(CompareVisibility, WallsBehindHitsSayNothing) {
       CompareVisibility(VisibleMapOf(OneWall(5.0)), ScanFrom(OneWall(2.0), SE2()), SE2());
   EXPECT_EQ(visibility.denied, 0);
   EXPECT_EQ(visibility.confirmed, 0);
-  EXPECT_EQ(visibility.denied_share(), 1.0);  // nothing speaks for the place
+  EXPECT_EQ(visibility.denied_share(), 1.0);  // no surface confirms the pose
 }
 
 TEST(CompareVisibility, WallsOutsideTheFieldOfViewSayNothing) {
@@ -79,13 +79,13 @@ TEST(CompareVisibility, BeamsThatMetNothingDenyWallsInTheirWay) {
   ASSERT_EQ(nothing.size(), 0U);
   EXPECT_EQ(CompareVisibility(VisibleMapOf(OneWall(5.0)), nothing, SE2()).denied_share(), 1.0);
   EXPECT_GE(CompareVisibility(VisibleMapOf(OneWall(5.0)), nothing, SE2()).denied, 60);
-  // Too far to say: a small turn misses a surface.
+  // Too far to compare: with a small error of the angle a beam misses the surface.
   const Visibility far = CompareVisibility(VisibleMapOf(OneWall(13.0)), nothing, SE2());
   EXPECT_EQ(far.denied + far.confirmed, 0);
 }
 
 TEST(CompareVisibility, OnlyFacesTurnedToTheLaserCount) {
-  // The map saw the wall's other face.
+  // The map contains the other face of the wall.
   const LocalMap back = MapFrom(OneWall(2.0), std::array<SE2, 1>{SE2(5.0, 0.0, 0.0)});
   const Visibility visibility = CompareVisibility(back, ScanFrom(OneWall(6.0), SE2()), SE2());
   EXPECT_EQ(visibility.denied + visibility.confirmed, 0);

@@ -1,4 +1,4 @@
-// Real recordings, where they are at hand: the shape of the trajectory.
+// The shape of the trajectory on real recordings, if these are available.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace loopgrid {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kMostScans = 100;  // sanitizers take their time
+constexpr std::size_t kMostScans = 100;  // sanitizers are slow
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 constexpr std::size_t kMostScans = 100;
@@ -45,7 +45,8 @@ TEST_P(RecordedDrive, HasTheShapeOfTheReference) {
   }
   const TrajectoryEvaluation evaluation = EvaluateTrajectory(estimate, ReadTumFile(reference_path));
   EXPECT_GT(evaluation.translation.count, estimate.size() / 2);
-  EXPECT_LE(evaluation.translation.rms, 0.3);  // other mappers' poses: good to no more
+  EXPECT_LE(evaluation.translation.rms,
+            0.3);  // the reference is from another mapper and has such errors
   EXPECT_LE(evaluation.rotation.rms, 2.0);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTestedFactor = 4.0;
 
-// A match that knows all but where along x the robot is: 20 m stand for "unknown".
+// A match that leaves x open: 20 m stand for "unknown".
 Eigen::Matrix3d CorridorMatch() { return Eigen::Vector3d(400.0, 1e-4, 1e-5).asDiagonal(); }
 
 Eigen::Matrix3d GoodMatch() { return Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal(); }
@@ -67,7 +67,7 @@ TEST(RobotPose, AnOldNodeLeavesItAsCertainAsBefore) {
   robot.ReferTo(3, SE2(0.1, 0.2, 0.3));
   EXPECT_EQ(robot.reference(), 3);
   EXPECT_EQ(robot.covariance(), before);
-  // An edge from that node rests on the match alone.
+  // The covariance of an edge from that node is that of the match alone.
   robot.Move(step, SE2(0.6, 0.2, 0.3), CorridorMatch());
   EXPECT_EQ(robot.edge_covariance(), CorridorMatch());
   const Eigen::Matrix3d moved =
@@ -90,7 +90,7 @@ TEST(RobotPose, GrowsLikeOdometryAlongACorridorAndStaysNarrowAcrossIt) {
   }
   const double sigma_a_step = 0.01 + 0.15 * 0.5;  // of the odometry's defaults
   EXPECT_LT(std::sqrt(last), 1.01 * std::sqrt(101.0) * sigma_a_step);
-  // One good match, and all is known again.
+  // After one good match the pose is certain again.
   robot.Move(step, step, GoodMatch());
   EXPECT_LT(robot.covariance()(0, 0), 1.01e-4);
 }

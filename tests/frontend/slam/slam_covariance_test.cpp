@@ -1,4 +1,4 @@
-// The covariance that is published with every pose: that of the pose in the map.
+// The covariance of every pose is that of the pose in the map.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(SlamCovariance, GrowsAlongTheWayAndFallsWhenALoopIsClosed) {
 TEST(SlamCovariance, HoldsTheErrorOfThePoseInTheMap) {
   const SimulatedRun run = TwiceRoundTheRoom();
   Slam slam;
-  int outside = 0;  // of the 99 % ellipsoid of three dimensions
+  int outside = 0;  // poses outside the 99 % ellipsoid in three dimensions
   for (std::size_t i = 0; i < run.observations.size(); ++i) {
     const TrackedScan tracked = slam.AddScan(run.observations[i]);
     if (i == 0) continue;
@@ -66,8 +66,9 @@ TEST(SlamCovariance, HoldsTheErrorOfThePoseInTheMap) {
   EXPECT_LE(outside, static_cast<int>(run.observations.size() / 20));
 }
 
-// To and fro in a corridor of 40 m that is bare but for its ends. The laser sees 8 m: in the middle
-// no scan says how far along the corridor the robot is. After some passes that is known space.
+// The robot drives from end to end of a corridor of 40 m without features, several times. The laser
+// sees 8 m, so in the middle no scan shows the position along the corridor. After some passes the
+// corridor is known space.
 TEST(SlamCovariance, StaysBoundedWhereTheMatchLeavesADirectionOpen) {
   World corridor;
   corridor.AddBox({0.0, 0.0}, {40.0, 2.4});
@@ -90,10 +91,11 @@ TEST(SlamCovariance, StaysBoundedWhereTheMatchLeavesADirectionOpen) {
     largest = std::max(largest, PositionSigma(tracked.covariance));
   }
   EXPECT_GT(slam.statistics().known_scans, 50);
-  EXPECT_LT(largest, 3.0);  // the odometry is good to some 15 % of 32 m at worst, 20 m is no news
+  EXPECT_LT(largest,
+            3.0);  // odometry has an error of at most about 15 % of 32 m; 20 m would mean "unknown"
 }
 
-// The laser is covered for a while: odometry alone carries the pose.
+// The laser is covered for a while, so the pose comes from odometry alone.
 TEST(SlamCovariance, GrowsLikeOdometryWhereNoScanIsMatched) {
   SimulatedRun run = TwiceRoundTheRoom();
   const std::size_t begin = 20;
@@ -116,7 +118,8 @@ TEST(SlamCovariance, GrowsLikeOdometryWhereNoScanIsMatched) {
     }
     last = sigma;
     if (i == begin) {
-      // Unmatched from one scan to the next: at least what odometry is known to err by.
+      // Without a match from one scan to the next, the covariance grows at least by that of
+      // odometry.
       const SE2 motion =
           run.observations[i - 1].T_odom_robot.Inverse() * run.observations[i].T_odom_robot;
       EXPECT_GT(sigma, 0.15 * motion.translation().norm());

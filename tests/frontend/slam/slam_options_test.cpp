@@ -11,7 +11,7 @@
 namespace loopgrid {
 namespace {
 
-// The message that the options are refused with; empty if they are not.
+// The message of the error for these options; empty if they are valid.
 std::string RefusalOf(const SlamOptions& options) {
   try {
     const Slam slam(options);

@@ -1,4 +1,4 @@
-// Robots that stay where they have been, are carried, or come back another day.
+// Robots that drive in known space, that are carried, or that continue an old map.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ SimulatedRun RoundsIn(const World& world, int rounds, std::uint32_t seed = 1) {
   return test_support::Simulate(world, route, options);
 }
 
-// The error of each pose beside the truth, seen from the first pose of the map.
+// The error of each pose, relative to the first pose of the map.
 std::vector<double> Errors(const SE2& T_world_map, const std::vector<SE2>& poses,
                            const std::vector<SE2>& truth) {
   std::vector<double> errors;
@@ -52,7 +52,7 @@ TEST(SlamInKnownSpace, AddsNoMoreNodesWhereItHasBeenThreeTimes) {
   slam.Finish();
   EXPECT_GT(slam.statistics().known_scans, slam.scan_count() / 2);
   EXPECT_EQ(nodes.back(), nodes[nodes.size() / 2]);  // the last six rounds add none
-  // Scans without nodes are as well placed as those with, and weigh nothing.
+  // Scans without nodes have poses as good as the others, and their points are not kept.
   const std::vector<double> errors = Errors(run.true_poses[0], slam.ScanPoses(), run.true_poses);
   EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.06);
   const int last = slam.scan_count() - 1;
@@ -95,7 +95,7 @@ TEST(SlamInKnownSpace, AddsNodesAgainWhereTheMapEnds) {
   EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.3);
 }
 
-// A run in an old map, told of or shown by a jump of the odometry.
+// A second run in the map of the first. Its first observation says so, or its odometry jumps.
 class SlamInAnOldMap : public ::testing::TestWithParam<bool> {};
 
 TEST_P(SlamInAnOldMap, FindsItselfAndAddsNextToNothing) {
@@ -106,7 +106,7 @@ TEST_P(SlamInAnOldMap, FindsItselfAndAddsNextToNothing) {
   for (const Observation& observation : first.observations) slam.AddScan(observation);
   const std::size_t nodes_then = slam.graph().poses.size();
   const int scans_then = slam.scan_count();
-  // The second run begins elsewhere in the room, by an odometry of its own.
+  // The second run begins elsewhere in the room, with odometry of its own.
   const std::size_t skipped = second.observations.size() / 5;
   std::vector<SE2> truth = first.true_poses;
   int lost = 0;
@@ -118,7 +118,7 @@ TEST_P(SlamInAnOldMap, FindsItselfAndAddsNextToNothing) {
     truth.push_back(second.true_poses[i]);
     if (!tracked.localized) {
       ++lost;
-      EXPECT_EQ(static_cast<std::size_t>(lost), i - skipped + 1);  // once found, never lost again
+      EXPECT_EQ(static_cast<std::size_t>(lost), i - skipped + 1);  // once localized, it stays so
       continue;
     }
     EXPECT_LT((first.true_poses[0] * tracked.T_map_robot).Boxminus(truth.back()).norm(), 0.1) << i;
@@ -153,7 +153,7 @@ TEST(SlamSessions, ARobotInAnotherWorldSaysThatItHasNotFoundItself) {
                        slam.node_scans()[Index(record.to)] >= static_cast<int>(before.size());
     EXPECT_FALSE(joins && record.outcome == ClosureOutcome::kAccepted);
   }
-  // Each part is still right in itself.
+  // Each part on its own is still right.
   const std::vector<SE2> poses = slam.ScanPoses();
   const SE2 T_world_second = second.true_poses[0] * poses[before.size()].Inverse();
   for (std::size_t i = 0; i < second.true_poses.size(); ++i) {

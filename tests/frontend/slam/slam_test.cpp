@@ -1,4 +1,4 @@
-// The whole front-end on simulated drives, whose truth is known.
+// The whole front-end on simulated drives with known poses.
 
 #include "frontend/slam/slam.h"
 
@@ -88,7 +88,7 @@ TEST(Slam, FollowsADriveThroughAnOfficeAndClosesItsLoops) {
   EXPECT_LT(evaluation.rotation.maximum, 1.0);
   EXPECT_EQ(slam.statistics().failed_matches, 0);
 
-  // Closures: some accepted, none of those wrong, and each of them in the graph.
+  // Some closures are accepted, none of these is wrong, and each of them is in the graph.
   int accepted = 0;
   for (const Closure& record : slam.closures()) {
     if (record.outcome != ClosureOutcome::kAccepted) continue;
@@ -123,7 +123,8 @@ TEST(Slam, AddsANodeAfterTheAskedForTravelOrTurn) {
   ASSERT_EQ(scans.size(), slam.graph().poses.size());
   EXPECT_EQ(scans[0], 0);
   for (std::size_t k = 0; k + 1 < scans.size(); ++k) {
-    // By the truth, which tracking follows to a few centimetres: far enough, and not much farther.
+    // By the true poses, which tracking follows to a few centimetres, nodes are far enough apart,
+    // and not much farther.
     const SE2& node = run.true_poses[Index(scans[k])];
     const SE2 step = node.Inverse() * run.true_poses[Index(scans[k + 1])];
     EXPECT_TRUE(step.translation().norm() > 0.6 || std::abs(step.theta()) > 0.57) << k;
@@ -221,7 +222,8 @@ TEST(Slam, GoesByTheOdometryWhereNoBeamReturns) {
 }
 
 TEST(Slam, BearsAwkwardLogs) {
-  // Readings of nothing and of errors, other numbers of beams, a robot that jumps and stands still.
+  // Scans without returns, erroneous readings, other numbers of beams, and a robot that jumps and
+  // stands still.
   SimulatedRun run = RoomRun();
   run.observations.resize(60);
   for (std::size_t i = 0; i < run.observations.size(); ++i) {

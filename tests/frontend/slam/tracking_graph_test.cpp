@@ -87,7 +87,7 @@ TEST(TrackingGraph, DoesNotTakeUpdatesOfEarlierNodesForThoseOfANewSession) {
   GraphUpdate localized;
   localized.localized = true;
   for (int k = 0; k < 3; ++k) graph.ApplyOldest(localized, &changed);
-  EXPECT_FALSE(graph.session().localized);  // that was said of the session before
+  EXPECT_FALSE(graph.session().localized);  // that update was for the session before
   graph.ApplyOldest(localized, &changed);
   EXPECT_TRUE(graph.session().localized);
 }

@@ -13,14 +13,15 @@
 
 namespace loopgrid::test_support {
 
-/// Nodes with their scans, as SLAM has them, for tests of what works on them.
+/// Nodes with their scans, for tests of classes that use them.
 class Walk {
  public:
   Walk() { nodes_.graph = &graph_.graph(); }
   Walk(const Walk&) = delete;
   Walk& operator=(const Walk&) = delete;
 
-  /// Adds a node `step` after the last one, known to `sigma` metres and a quarter of it in radians.
+  /// Adds a node at `step` from the last one, with standard deviations of `sigma` metres and
+  /// `sigma` / 4 radians.
   void Add(const SE2& step, PointScan scan, double sigma = 0.02) {
     const double variance = sigma * sigma;
     const SE2 last = nodes_.size() > 0 ? nodes_.pose(nodes_.size() - 1) : SE2();
@@ -30,7 +31,8 @@ class Walk {
     nodes_.scans.push_back(scans_.back().get());
   }
 
-  /// Adds the nodes at `truth`, seen by `laser`; each step is measured with the error `drift`.
+  /// Adds nodes at the poses `truth` with scans of `laser`. Each step is measured with the error
+  /// `drift`.
   void Follow(const World& world, const std::vector<SE2>& truth, const SE2& drift = SE2(),
               const SimulatedLaser& laser = {}) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -50,7 +52,7 @@ class Walk {
 
 inline constexpr int kNodesARound = 24;
 
-/// Round and round in DistinctiveRoom(), 24 nodes of half a metre a round.
+/// Rounds in DistinctiveRoom(), with 24 nodes half a metre apart in each round.
 inline std::vector<SE2> RoundWalk(int nodes) {
   std::vector<SE2> poses;
   for (int i = 0; i < nodes; ++i) {
@@ -61,7 +63,7 @@ inline std::vector<SE2> RoundWalk(int nodes) {
   return poses;
 }
 
-/// Twice round in DistinctiveRoom(), as tracking would hand it over, with the truth as odometry.
+/// Two rounds in DistinctiveRoom(), as tracking would submit them, with the true poses as odometry.
 inline std::vector<NewNode> RoundNodes() {
   const std::vector<SE2> truth = RoundWalk(2 * kNodesARound);
   std::vector<NewNode> nodes;

@@ -22,7 +22,7 @@ TEST(NearestNodes, AreThoseThatSortingFinds) {
   test_support::PortableRandom random(7);
   PoseGraph<SE2> graph;
   for (int i = 0; i < 200; ++i) {
-    // On a coarse lattice, so that many are equally far.
+    // On a coarse lattice, so that many distances are equal.
     const double x = std::floor(random.Uniform(-5.0, 5.0));
     const double y = std::floor(random.Uniform(-5.0, 5.0));
     graph.poses.emplace_back(x, y, 0.0);
@@ -45,7 +45,7 @@ TEST(NearestNodes, AreThoseThatSortingFinds) {
 }
 
 TEST(KnownSpace, TakesThreePassesOfOneSession) {
-  // Nodes at the place, away from it for more than `same_pass` nodes, and so on.
+  // Nodes at the place, then more than `same_pass` nodes away from it, and so on.
   std::vector<double> xs;
   const auto pass_by = [&xs] {
     for (double x : {-0.4, 0.1, 0.6}) xs.push_back(x);

@@ -7,8 +7,8 @@
 namespace loopgrid {
 namespace {
 
-// Node 0 at scan 0, node 1 at scan 4; then scans that belong to node 0 again, and node 2 joined to
-// it from scan 6 on at scan 8.
+// Node 0 is at scan 0 and node 1 at scan 4. The scans after that belong to node 0 again. Node 2 is
+// at scan 8 and joined to node 0; the path to it begins at scan 6.
 class Trail : public ::testing::Test {
  protected:
   Trail() {
@@ -46,7 +46,7 @@ TEST_F(Trail, ScansOnTheWayTakeTheirShareOfWhatTheGraphHasChanged) {
   for (int scan = 0; scan <= 4; ++scan) {
     EXPECT_NEAR(trail_.Pose(scan, graph_).x(), 0.3 * scan, 1e-12) << scan;
   }
-  // Before scan 6 the robot was not on its way to node 2.
+  // Scan 5 is not on the path to node 2.
   EXPECT_EQ(trail_.Pose(5, graph_).theta(), 0.0);
   EXPECT_NEAR(trail_.Pose(6, graph_).theta(), 0.0, 1e-12);
   EXPECT_NEAR(trail_.Pose(7, graph_).theta(), 0.2, 1e-12);

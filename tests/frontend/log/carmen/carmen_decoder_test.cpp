@@ -1,5 +1,5 @@
-// The decoder by itself: lines in portions, line numbers, the end. What the lines mean is tested
-// through CarmenReader, which is a LineReader in front of it.
+// The decoder alone: lines one by one, line numbers, the end. The meaning of lines is tested
+// through CarmenReader, which reads lines and passes them to a decoder.
 
 #include "frontend/log/carmen/carmen_decoder.h"
 
@@ -27,7 +27,8 @@ using ::testing::IsEmpty;
 using ::testing::StrEq;
 using ::testing::ThrowsMessage;
 
-/// A robot that drives and turns, with a mount that only its poses tell, and lines of all kinds.
+/// A robot that drives and turns, with a mount that has to be found from its poses, and lines of
+/// all kinds.
 std::vector<std::string> SomeLines(int scans) {
   const SE2 mount(0.3, 0.05, -0.1);
   std::vector<std::string> lines = {"# message formats", "", "SYNC tag 0.1 nohost 0.1"};
@@ -136,7 +137,7 @@ TEST(CarmenDecoder, CountsLinesThatAreTooLongOrCutShort) {
   CarmenDecoder decoder("log");
   Observation observation;
   decoder.AddLine("", true, true);
-  decoder.AddLine("FLASER 1 5 0 0 0 0 0 0 7", false);  // perhaps 77
+  decoder.AddLine("FLASER 1 5 0 0 0 0 0 0 7", false);  // may have been 77
   decoder.BreakOff("log: is gone");
   decoder.Finish();
   EXPECT_FALSE(decoder.Next(&observation));

@@ -80,7 +80,8 @@ TEST(ParseLaserLine, ReadsRobotLaser) {
 
 TEST(ParseLaserLine, ReadsRawLaserWithoutPoses) {
   CarmenLaserMessage message;
-  ASSERT_EQ(ParseLaserLine(kFlaserLine, &message), "");  // must leave nothing behind
+  ASSERT_EQ(ParseLaserLine(kFlaserLine, &message),
+            "");  // nothing of it may be left in the next message
   ASSERT_EQ(ParseLaserLine(kRawLaserLine, &message), "");
   EXPECT_EQ(message.tag, CarmenTag::kRawLaser2);
   EXPECT_FALSE(message.has_poses);

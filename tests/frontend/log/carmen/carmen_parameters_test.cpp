@@ -58,15 +58,15 @@ TEST(BeamAnglesOf, RobotLaserStatesItsOwn) {
   BeamAngles angles = BeamAnglesOf(message, parameters.Of(message.tag));
   EXPECT_EQ(angles.first, -1.0);
   EXPECT_EQ(angles.step, 0.25);
-  message.angular_resolution = 0.0;  // then the field of view says it
+  message.angular_resolution = 0.0;  // then the field of view decides
   angles = BeamAnglesOf(message, parameters.Of(message.tag));
   EXPECT_EQ(angles.first, -1.0);
   EXPECT_EQ(angles.step, 0.5);
   message.field_of_view = 2.5;
-  message.ranges.resize(10);  // of an even count the last beam is missing
+  message.ranges.resize(10);  // with an even count the last beam is missing
   EXPECT_EQ(BeamAnglesOf(message, parameters.Of(message.tag)).step, 0.25);
   message.ranges.resize(5);
-  message.field_of_view = 0.0;  // then the count does
+  message.field_of_view = 0.0;  // then the count decides
   angles = BeamAnglesOf(message, parameters.Of(message.tag));
   EXPECT_NEAR(angles.first, -90.0 * kDegree, 1e-12);
   EXPECT_NEAR(angles.step, 45.0 * kDegree, 1e-12);

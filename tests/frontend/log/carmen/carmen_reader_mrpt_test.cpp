@@ -48,8 +48,8 @@ std::vector<MrptScan> ReadWithMrpt(const std::string& path) {
   return scans;
 }
 
-// Times are not compared: MRPT's parser takes the seconds for another unit. Where the laser sits is
-// MRPT's difference of the two poses; that is no mount in a corrected log.
+// Times are not compared, because MRPT's parser reads the seconds in another unit. MRPT takes the
+// difference of the two poses for the laser's mount; in a corrected log that is wrong.
 void ExpectAgreement(const WholeLog& ours, const std::vector<MrptScan>& theirs, bool same_mount) {
   ASSERT_EQ(ours.observations.size(), theirs.size());
   for (std::size_t i = 0; i < theirs.size(); ++i) {

@@ -179,7 +179,7 @@ TEST(RawlogReader, AnUpsideDownLaserSweepsTheOtherWay) {
   const WholeLog log = ReadAll(bytes);
   ASSERT_THAT(log.observations, SizeIs(1));
   const LaserScan& ours = log.observations[0].scan;
-  // Beam by beam where MRPT's pose in space puts it.
+  // Each beam has to be where MRPT's pose in space puts it.
   for (std::size_t i = 0; i < 3; ++i) {
     const double theirs = scan.getScanAngle(i);
     double x = 0.0;
