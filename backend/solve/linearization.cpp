@@ -1,6 +1,8 @@
 #include "backend/solve/linearization.h"
 
+#include <Eigen/QR>
 #include <cstddef>
+#include <utility>
 
 #include "backend/base/index.h"
 #include "backend/graph/parametrization.h"
@@ -11,14 +13,40 @@ namespace {
 
 constexpr double kSmallestScale = 1e-9;
 
-/// Keeps steps from going along directions that F does not depend on. The gradient along them,
-/// which is zero but for rounding errors of 1e-16, makes steps of a hundredth of the errors at
-/// most.
-constexpr double kFreeDamping = 1e-14;
+/// Free directions are looked at one by one, up to this number.
+constexpr int kMostFreeDirections = 64;
+
+/// A direction is free if H is this share of what it would be there without off-diagonal entries:
+/// the square of what J v may be, as a share of its terms, if it should be zero.
+constexpr double kFreeCurvature = 1e-26;
+
+/// A damping for matrices that are nearly singular: b, as far as it is made of rounding errors of
+/// 1e-16, then makes steps of a hundredth of the errors at most.
+constexpr double kSingularDamping = 1e-14;
 
 /// A step that is not exact is corrected by the next one. Covariances are not: beyond this share of
 /// a pivot that may be rounding errors, they are computed with twice the digits.
 constexpr double kMostNoise = 1e-2;
+
+/// v^T H v.
+template <int kDof>
+double ExactCurvature(const SymmetricBlockMatrix<kDof, DoubleDouble>& H, const Eigen::VectorXd& v) {
+  DoubleDouble sum;
+  const auto add = [&](const auto& block, int row, int col) {
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j < kDof; ++j) {
+        sum += block(i, j) * ExactProduct(v[kDof * row + i], v[kDof * col + j]);
+      }
+    }
+  };
+  for (int k = 0; k < static_cast<int>(H.places().size()); ++k) {
+    const BlockPlace& place = H.places()[ToIndex(k)];
+    add(H.off_diagonal(k), place.row, place.col);
+  }
+  sum += sum;
+  for (int i = 0; i < H.cols(); ++i) add(H.diagonal(i), i, i);
+  return sum.high;
+}
 
 }  // namespace
 
@@ -39,17 +67,22 @@ double Linearization<Pose>::Linearize(const PoseGraph<Pose>& graph, const Object
 
 template <typename Pose>
 Definiteness Linearization<Pose>::Factorize(double damping) {
-  const auto factorize = [this](const Eigen::VectorXd& added) {
-    return FactorizeHessian(*graph_, objective_, equations_, added, &factor_);
-  };
-  const Definiteness result = factorize(damping > 0.0 ? damping * Scale() : Eigen::VectorXd());
+  const Eigen::VectorXd scale = Scale();
+  Eigen::VectorXd added = damping > 0.0 ? damping * scale : Eigen::VectorXd();
+  const Definiteness result = FactorizeHessian(*graph_, objective_, equations_, added, &factor_);
   has_undamped_factor_ = result == Definiteness::kDefinite && damping == 0.0;
+  free_directions_.resize(0, 0);
   free_decrease_.reset();
   if (result != Definiteness::kSemidefinite) return result;
-  // Of the many minima of the model the factor gives one, perhaps far away along a free direction;
-  // how low it is is the same for all.
-  const double decrease = -gradient().dot(Step());
-  if (factorize(kFreeDamping * Scale()) == Definiteness::kIndefinite) {
+  // The factor gives one of the minima of the model. It may be far away, but all are equally low.
+  const Eigen::VectorXd step = factor_.Solve(-gradient());
+  const double decrease = -gradient().dot(step);
+  if (added.size() == 0) added.setZero(scale.size());
+  if (HoldFreeDirections(added)) return result;
+  free_directions_.resize(0, 0);
+  added += kSingularDamping * scale;
+  if (FactorizeHessian(*graph_, objective_, equations_, added, &factor_) ==
+      Definiteness::kIndefinite) {
     return Definiteness::kIndefinite;
   }
   free_decrease_ = decrease;
@@ -57,9 +90,50 @@ Definiteness Linearization<Pose>::Factorize(double damping) {
 }
 
 template <typename Pose>
+bool Linearization<Pose>::HoldFreeDirections(Eigen::VectorXd added) {
+  const Eigen::MatrixXd directions = factor_.FreeDirections(kMostFreeDirections);
+  const Eigen::Index count = directions.cols();
+  if (count == 0) return false;
+  const Eigen::VectorXd scale = Scale();
+  const auto H = ExactHessian(*graph_, objective_, equations_);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::VectorXd v = directions.col(k);
+    const double most = kFreeCurvature * v.dot(scale.cwiseProduct(v));
+    if (!(ExactCurvature<kDof>(H, v) <= most)) return false;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(directions);
+  free_directions_ = qr.householderQ() * Eigen::MatrixXd::Identity(directions.rows(), count);
+  // The factor holds the variables that were eliminated last. Where a direction hardly moves one of
+  // them, the rounding errors of b along the direction are multiplied by up to the inverse of that.
+  // So hold those which the directions move most: by a stiffness of any size, since the solution
+  // can have a zero there.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(free_directions_.transpose());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index held = pivoted.colsPermutation().indices()[k];
+    added[held] += scale[held];
+  }
+  return FactorizeHessian(*graph_, objective_, equations_, added, &factor_) ==
+         Definiteness::kDefinite;
+}
+
+template <typename Pose>
+Eigen::VectorXd Linearization<Pose>::Solve(const Eigen::VectorXd& v) const {
+  // The factor of a semidefinite matrix gives the solution that is zero at the variables that are
+  // held, which may be far longer than the shortest one.
+  return OutsideFreeDirections(factor_.Solve(OutsideFreeDirections(v)));
+}
+
+template <typename Pose>
+Eigen::VectorXd Linearization<Pose>::OutsideFreeDirections(Eigen::VectorXd v) const {
+  if (free_directions_.cols() > 0) v -= free_directions_ * (free_directions_.transpose() * v);
+  return v;
+}
+
+template <typename Pose>
 Definiteness Linearization<Pose>::FactorizeForCovariances(const PoseGraph<Pose>& graph,
                                                           bool careful) {
   if (!has_undamped_factor_) {
+    free_directions_.resize(0, 0);
     const Definiteness result =
         FactorizeHessian(graph, objective_, equations_, Eigen::VectorXd(), &factor_);
     has_undamped_factor_ = result == Definiteness::kDefinite;

@@ -30,9 +30,9 @@ class Linearization {
   /// be at this point whenever Factorize is called.
   double Linearize(const PoseGraph<Pose>& graph, const Objective& objective);
 
-  /// Factorises H + damping * diag(scale()). There is a factor unless the result is kIndefinite. If
-  /// it is kSemidefinite, there are directions that F does not depend on; a damping that is too
-  /// weak for any other effect then keeps steps from going along them.
+  /// Factorises H + damping * diag(Scale()). There is a factor unless the result is kIndefinite. If
+  /// it is kSemidefinite, there are directions that F does not depend on, or hardly; Solve, and
+  /// with it Step, leaves them out, or a damping keeps it from going far along them.
   [[nodiscard]] Definiteness Factorize(double damping);
 
   /// Factorises H, unless the factor is that of H already; if `careful`, with twice the digits
@@ -45,10 +45,11 @@ class Linearization {
   bool has_undamped_factor() const { return has_undamped_factor_; }
   void InvalidateFactor() { has_undamped_factor_ = false; }
 
-  /// (H + damping * diag(scale))^-1 * v by the last factor, which may be of an earlier point.
-  Eigen::VectorXd Solve(const Eigen::VectorXd& v) const { return factor_.Solve(v); }
+  /// (H + damping * diag(Scale()))^-1 * v by the last factor, which may be of an earlier point. By
+  /// the pseudo-inverse if that matrix was only semidefinite.
+  Eigen::VectorXd Solve(const Eigen::VectorXd& v) const;
   /// Solve(-b).
-  Eigen::VectorXd Step() const { return factor_.Solve(-gradient()); }
+  Eigen::VectorXd Step() const { return Solve(-gradient()); }
 
   /// How far the quadratic model without any damping is above its minimum, after Factorize(0) at
   /// this point, of which `step` is the Step().
@@ -81,13 +82,22 @@ class Linearization {
   }
 
  private:
+  /// After the factor of a semidefinite matrix: finds the directions that F does not depend on, and
+  /// makes a factor that holds them and gives solutions with few rounding errors. `added` is what
+  /// was added to the diagonal. False if some of the directions are not quite free.
+  bool HoldFreeDirections(Eigen::VectorXd added);
+
+  /// v without what it has along the free directions.
+  Eigen::VectorXd OutsideFreeDirections(Eigen::VectorXd v) const;
+
   WorkerPool workers_;
   NormalEquations<Pose> equations_;
   SparseCholesky<kDof> factor_;
   const PoseGraph<Pose>* graph_ = nullptr;  // that was linearised
   Objective objective_;                     // with which it was
   bool has_undamped_factor_ = false;
-  std::optional<double> free_decrease_;  // UndampedDecrease, if H is only semidefinite
+  std::optional<double> free_decrease_;  // UndampedDecrease, if another damping had to be added
+  Eigen::MatrixXd free_directions_;  // orthonormal columns that the factorised matrix maps to zero
 };
 
 extern template class Linearization<SE2>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "backend/base/index.h"
@@ -98,6 +99,34 @@ Definiteness SparseCholesky<kDim>::FactorizeExactly(const ExactMatrix& H,
   }
   FindSmallestPivot();
   return result;
+}
+
+template <int kDim>
+Eigen::MatrixXd SparseCholesky<kDim>::FreeDirections(int most) {
+  const SymbolicFactor& structure = plan_.structure();
+  std::vector<double*> pivots;  // infinite ones, with zeros below them
+  std::vector<int> variables;
+  for (int s = 0; s < structure.supernode_count(); ++s) {
+    const std::ptrdiff_t step = PaddedRows(plan_.front_size(s)) + 1;
+    double* const first = values_.data() + plan_.panel_start(s);
+    for (int i = 0; i < plan_.pivots(s); ++i) {
+      if (!std::isinf(first[i * step])) continue;
+      pivots.push_back(first + i * step);
+      const std::size_t row = RowOfFront(s, i);
+      variables.push_back(kDim * structure.order[row / kDim] + static_cast<int>(row % kDim));
+    }
+  }
+  const Eigen::Index rows = kDim * static_cast<Eigen::Index>(structure.order.size());
+  if (static_cast<int>(pivots.size()) > most) return Eigen::MatrixXd(rows, 0);
+  // With a pivot of 1 in its place, L^T v = e has the solution that is 1 there.
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(pivots.size()));
+  for (std::size_t k = 0; k < pivots.size(); ++k) {
+    *pivots[k] = 1.0;
+    units(variables[k], static_cast<Eigen::Index>(k)) = 1.0;
+  }
+  Eigen::MatrixXd directions = Solve(units);  // L e = e: nothing is below the pivots
+  for (double* pivot : pivots) *pivot = std::numeric_limits<double>::infinity();
+  return directions;
 }
 
 template <int kDim>

@@ -37,6 +37,11 @@ class SparseCholesky {
   [[nodiscard]] Definiteness FactorizeExactly(const ExactMatrix& H,
                                               const Eigen::VectorXd& added = {});
 
+  /// A solution v of H v = 0 (a column) for each direction that FactorizeExactly has found free: 1
+  /// at the variable that is held for it, 0 at those held for the others. No columns if there are
+  /// none, or more than `most`.
+  Eigen::MatrixXd FreeDirections(int most);
+
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
 

@@ -196,29 +196,50 @@ TYPED_TEST(MixedInformationTest, CovariancesOfAChainAreTheSumsOfItsLinks) {
   }
 }
 
+/// A chain in whose middle a link says nothing about one direction.
+template <typename Pose>
+PoseGraph<Pose> ChainWithAFreeDirection(int direction, double weight, unsigned seed) {
+  std::vector<Pose> truth;
+  PoseGraph<Pose> graph = MixedChain<Pose>(20, 0, 0.0, seed, &truth);
+  typename Pose::Tangent weights = Pose::Tangent::Constant(weight);
+  weights(direction) = 0.0;
+  graph.constraints[9].information = weights.asDiagonal();
+  return graph;
+}
+
 TYPED_TEST(MixedInformationTest, ADirectionThatNothingHoldsHasNoCovariance) {
   using Pose = TypeParam;
-  using Tangent = typename Pose::Tangent;
   for (int direction = 0; direction < Pose::kDof; ++direction) {
-    std::vector<Pose> truth;
-    PoseGraph<Pose> graph = MixedChain<Pose>(20, 0, 0.0, 2, &truth);
-    Tangent weights = Tangent::Ones();
-    weights(direction) = 0.0;
-    graph.constraints[9].information = weights.asDiagonal();
+    const PoseGraph<Pose> graph = ChainWithAFreeDirection<Pose>(direction, 1.0, 2);
     EXPECT_FALSE(Optimizer<Pose>().ComputeMarginals(graph).has_value()) << direction;
-    // The rest is optimised all the same, without a step along it.
-    graph.constraints[9].information = 1e-2 * weights.asDiagonal();
-    for (std::size_t i = 1; i < truth.size(); ++i) {
-      graph.poses[i] = truth[i].Boxplus(Tangent::Constant(0.01));
+  }
+}
+
+// A damping that keeps steps short along the free direction is stronger than the weak link's other
+// directions, which would need dozens of steps to their optimum.
+TYPED_TEST(MixedInformationTest, ADirectionThatNothingHoldsDoesNotKeepTheOthersFromTheOptimum) {
+  using Pose = TypeParam;
+  for (const Method method : {Method::kLevenbergMarquardt, Method::kDogLeg}) {
+    for (unsigned seed = 2; seed <= 8; seed += 2) {
+      for (int direction = 0; direction < Pose::kDof; ++direction) {
+        SCOPED_TRACE(::testing::Message() << "method " << static_cast<int>(method) << ", seed "
+                                          << seed << ", direction " << direction);
+        PoseGraph<Pose> graph = ChainWithAFreeDirection<Pose>(direction, 1e-2, seed);
+        for (std::size_t i = 1; i < graph.poses.size(); ++i) {
+          graph.poses[i] = graph.poses[i].Boxplus(Pose::Tangent::Constant(0.01));
+        }
+        const PoseGraph<Pose> start = graph;
+        OptimizerOptions options;
+        options.method = method;
+        const OptimizerResult result = Optimizer<Pose>(options).Optimize(&graph);
+        EXPECT_EQ(result.termination, Termination::kConverged) << ToString(result.termination);
+        EXPECT_LE(result.final_error, 1e-8);
+        EXPECT_LE(result.iterations, 15);
+        for (std::size_t i = 0; i < graph.poses.size(); ++i) {
+          EXPECT_LE(test_support::Distance(graph.poses[i], start.poses[i]), 1.0) << "node " << i;
+        }
+      }
     }
-    const OptimizerResult result = Optimizer<Pose>().Optimize(&graph);
-    // The free direction makes steps that promise more than rounding errors allow: the optimiser
-    // may then say that no step lowers F, which is as true at this minimum, where F is 0.
-    EXPECT_TRUE(result.termination == Termination::kConverged ||
-                result.termination == Termination::kStalled)
-        << direction << ": " << ToString(result.termination);
-    EXPECT_LE(result.final_error, 1e-6) << direction;
-    EXPECT_LE(graph.poses.back().translation().norm(), 100.0) << direction;
   }
 }
 
