@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// So many updates are taken, or scans drawn anew, before the clock is looked at: a few milliseconds
+// Number of updates taken, or scans drawn again, between two looks at the clock: a few milliseconds
 // of work.
 constexpr std::size_t kSlice = 32;
 
@@ -33,7 +33,7 @@ void LiveMapOptions::Validate() const {
 
 class LiveMap::Impl {
  private:
-  // What is kept of an update.
+  // The parts of an update that are kept.
   struct Change {
     ScanOnMap scan;                           // if it has points
     std::shared_ptr<const NodeStates> nodes;  // may be null
@@ -97,7 +97,7 @@ class LiveMap::Impl {
     }
   }
 
-  // True if somebody waits for the picture.
+  // Waits until there is work. True if another thread waits for the picture.
   bool WaitForWork() {
     std::unique_lock lock(mutex_);
     const auto has_work = [this] {
@@ -112,7 +112,7 @@ class LiveMap::Impl {
     return hurrying_ > 0;
   }
 
-  // Whether something has to be done once its time has come.
+  // Whether the map has to be published or redrawn later.
   bool HasDuties() const { return has_unpublished_ || map_.IsOutdated(); }
 
   bool IsStopping() const {
@@ -180,12 +180,12 @@ class LiveMap::Impl {
   std::condition_variable current_;
   std::deque<Change> queue_;
   std::int64_t added_ = 0;
-  std::int64_t shown_ = 0;  // so many of the added updates are in the picture
+  std::int64_t shown_ = 0;  // number of added updates that the picture shows
   int hurrying_ = 0;        // threads that wait for the picture
   bool stopping_ = false;
   Counters counters_;
 
-  // Only the thread uses these.
+  // Only the drawing thread uses these.
   MovingMap map_;
   std::int64_t taken_ = 0;
   std::int64_t redraws_ = 0;

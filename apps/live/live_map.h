@@ -14,17 +14,17 @@ namespace loopgrid {
 struct LiveMapOptions {
   OccupancyGridOptions grid;
   double publish_interval = 0.1;  ///< the picture changes at most this often, seconds
-  double redraw_pause = 4.0;      ///< from the start of a redraw to the next one, as a multiple of
+  double redraw_pause = 4.0;      ///< time between the starts of two redraws, as a multiple of
                                   ///< the time that the redraw took
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;
 };
 
-/// The map as it grows, on a thread of its own: draws each scan, and draws all scans anew when
-/// nodes have moved. Takes 4 bytes for each cell of the grid (8 while it redraws), of which there
-/// are at most `grid.max_cells`, 1.4 bytes for each cell of the tiles, and some 100 bytes for each
-/// scan beside its points, which it shares. All methods may be called from any thread.
+/// The map while it grows. A thread of its own draws each scan, and draws all scans again when
+/// nodes have moved. Memory: 4 bytes for each cell of the grid (8 while it redraws; at most
+/// `grid.max_cells` cells), 1.4 bytes for each cell of the tiles, and about 100 bytes for each scan
+/// without its points, which are shared. All methods may be called from any thread.
 class LiveMap {
  public:
   /// Throws Error (kUsage) if the options are not valid.
@@ -48,7 +48,7 @@ class LiveMap {
 
   struct Counters {
     std::int64_t scans = 0;     ///< taken from the queue
-    std::int64_t left_out = 0;  ///< of these, the ones that do not fit into `max_cells`
+    std::int64_t left_out = 0;  ///< scans that do not fit into `max_cells`
     std::int64_t redraws = 0;
     std::size_t waiting = 0;  ///< updates in the queue
   };

@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::size_t kSide = kTileSide;
 
-// 2^24 cells a pixel: no grid has so many cells a side that this would not do.
+// 2^24 cells a pixel. This is enough for every grid.
 constexpr int kCoarsestPicture = 24;
 
-// Rounds down, also below zero.
+// Division that rounds down, also for negative numbers.
 std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
@@ -37,7 +37,7 @@ TileId ParentOf(const TileId& id) {
           static_cast<int>(FloorDivide(id.y, 2))};
 }
 
-// The box of the squares of 2^level cells a side that `box` touches.
+// The squares of 2^level cells a side that `box` touches, as a box.
 CellBox Shrunk(const CellBox& box, int level) {
   return {box.min_x >> level, box.min_y >> level, ((box.max_x - 1) >> level) + 1,
           ((box.max_y - 1) >> level) + 1};
@@ -178,15 +178,14 @@ std::shared_ptr<const std::string> MapTiles::Png(const TileId& id, std::uint64_t
       image.pixels.insert(image.pixels.end(), row, row + kTileSide);
     }
   }
-  auto png =
-      std::make_shared<const std::string>(EncodePng(image));  // without the lock: it takes a while
+  auto png = std::make_shared<const std::string>(EncodePng(image));  // without the lock: it is slow
   const std::lock_guard lock(mutex_);
   Tile& tile = tiles_.at(id);
   if (tile.version == drawn) tile.png = png;
   return png;
 }
 
-// The caller has locked the tiles.
+// The caller holds the lock.
 CellBox MapTiles::SeenBox() const {
   CellBox seen;
   for (const auto& [id, tile] : tiles_) {

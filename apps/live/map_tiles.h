@@ -15,11 +15,11 @@
 
 namespace loopgrid {
 
-/// Names a square of the map with kTileSide pixels on each side, where a pixel is 2^level cells
-/// wide. Its lower left corner is at cell (x, y) * kTileSide * 2^level, whatever the size of the
-/// map.
+/// Identifies a square of the map with kTileSide pixels a side, where a pixel is 2^level cells
+/// wide. Its lower left corner is at cell (x, y) * kTileSide * 2^level, and stays there when the
+/// map grows.
 struct TileId {
-  int level = 0;  ///< 0: a pixel a cell, up to kTileLevels - 1
+  int level = 0;  ///< 0 (a pixel is a cell) to kTileLevels - 1
   int x = 0;
   int y = 0;
 
@@ -29,7 +29,7 @@ struct TileId {
 inline constexpr int kTileSide = 256;
 inline constexpr int kTileLevels = 6;
 
-/// A tile as it was after a certain change of the map.
+/// A tile and the number of its last change.
 struct TileVersion {
   TileId id;
   std::uint64_t version = 0;
@@ -41,7 +41,7 @@ struct TileVersion {
 /// of each tile that was asked for. All methods may be called from any thread.
 class MapTiles {
  public:
-  /// Takes over the cells of `box`. The version of a tile rises if one of its pixels changes.
+  /// Copies the cells of `box`. The version of a tile increases if one of its pixels changes.
   void Update(const OccupancyGrid& grid, const CellBox& box);
 
   /// The number of changes so far; also the version of the tile that changed last. Starts at 0.

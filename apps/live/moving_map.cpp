@@ -59,7 +59,7 @@ void MovingMap::AddScan(const ScanOnMap& scan) {
     drawn_nodes_.push_back(nodes_[i]);
   }
   if (!scan.localized) return;
-  outdated_ = outdated_ || drawable_ + 1 < scans_.size();  // scans have waited to be drawn
+  outdated_ = outdated_ || drawable_ + 1 < scans_.size();  // scans were waiting to be drawn
   drawable_ = scans_.size();
   CellBox box;
   if (!Draw(scans_.back(), T_map_node, &grid_, &box)) ++left_out_;
@@ -102,7 +102,7 @@ void MovingMap::FinishRedraw() {
   extent_ = next_->extent;
   left_out_ = next_->left_out;
   next_.reset();
-  CompareWithDrawn();  // they may have moved on in the meantime
+  CompareWithDrawn();  // nodes may have moved since the redraw began
 }
 
 CellBox MovingMap::TakeChanges() { return std::exchange(changes_, CellBox{}); }

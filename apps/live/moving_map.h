@@ -16,17 +16,17 @@ namespace loopgrid {
 /// A scan for the map.
 struct ScanOnMap {
   ScanPlace place;
-  SE2 T_map_robot;        ///< tells where the node is, if it is new
+  SE2 T_map_robot;        ///< gives the pose of the node if the node is new
   bool localized = true;  ///< false: the robot has not found itself in the old map yet; the scan is
                           ///< not drawn until it has
   std::shared_ptr<const PointScan> points;
 };
 
 /// An occupancy grid of scans whose poses are relative to the nodes of a graph. When nodes move,
-/// the scans are drawn anew, a few at a time, into a second grid. Until that is complete the first
-/// one stays and still takes new scans. Takes 4 bytes for each cell, twice that while it redraws,
-/// and some 100 bytes for each scan beside its points, which are shared. One thread may use an
-/// object at a time.
+/// the scans are drawn again into a second grid, a few at a time. Until that grid is complete, the
+/// first one is used, and new scans are drawn into it. Memory: 4 bytes for each cell, 8 during a
+/// redraw, and about 100 bytes for each scan without its points, which are shared. One thread may
+/// use an object at a time.
 class MovingMap {
  public:
   /// Throws Error (kUsage) if the options are not valid.
@@ -35,14 +35,14 @@ class MovingMap {
   /// Draws a scan and remembers it. One that does not fit into the grid is left out and counted.
   void AddScan(const ScanOnMap& scan);
 
-  /// Where the nodes are now (T_map_node).
+  /// Sets the present poses of the nodes (T_map_node).
   void MoveNodes(std::span<const SE2> poses);
 
-  /// Whether some nodes are no longer where they were drawn: half a cell off, or turned so far that
-  /// a point ten metres away is half a cell off.
+  /// Whether some node has moved since it was drawn: by half a cell, or by an angle that moves a
+  /// point ten metres away by half a cell.
   bool IsOutdated() const { return outdated_; }
 
-  /// Begins to draw everything anew.
+  /// Begins to draw all scans again.
   void StartRedraw();
   bool IsRedrawing() const { return next_.has_value(); }
 
@@ -64,7 +64,7 @@ class MovingMap {
   };
   struct Redraw {
     OccupancyGrid grid;
-    std::vector<SE2> nodes;  // where they are drawn: where they were at the start, or came to be
+    std::vector<SE2> nodes;  // as drawn: at the start, or when added
     CellBox extent;
     std::size_t drawn = 0;  // scans
     std::int64_t left_out = 0;
@@ -79,7 +79,7 @@ class MovingMap {
   std::vector<Entry> scans_;
   std::vector<SE2> nodes_;        // T_map_node now
   std::vector<SE2> drawn_nodes_;  // T_map_node that grid_ shows
-  std::size_t drawable_ = 0;      // scans whose session has found its place
+  std::size_t drawable_ = 0;      // scans whose session is localized
   std::optional<Redraw> next_;
   CellBox extent_;  // of what grid_ shows
   CellBox changes_;

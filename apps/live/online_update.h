@@ -17,7 +17,8 @@ struct NodeStates {
   std::vector<Eigen::Matrix3d> covariances;  ///< as Slam::NodeCovariances(); may be fewer
 };
 
-/// What one scan has changed. The mapping thread hands it to everything that shows or writes.
+/// What one scan has changed. The mapping thread passes it to the live map, the page and the
+/// events.
 struct OnlineUpdate {
   TrackedScan tracked;
   std::int64_t line = 0;                    ///< line of the journal with the scan, from 1

@@ -53,7 +53,7 @@ std::optional<std::string> Refresher::TakeNote() {
   return std::exchange(note_, std::nullopt);
 }
 
-/// Says a thing once, not at every refresh.
+/// Notes a message, unless it is the same as the last one.
 void Refresher::Note(std::string text) {
   if (text == last_note_) return;
   last_note_ = text;

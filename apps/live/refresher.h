@@ -16,36 +16,37 @@
 
 namespace loopgrid {
 
-/// What the refreshed files are made of, beside the map.
+/// The content of the refreshed files, without the map.
 struct RefreshContent {
   Trajectory trajectory;
   PoseGraph<SE2> graph;
 };
 
-/// Writes map.png, map.pgm, map.yaml, trajectory.tum and graph.g2o again and again while mapping
-/// goes on, each whole or not at all, on a thread of its own. A map that would be too large for an
-/// image is drawn coarser; one that does not fit into the memory stays as it was refreshed last.
+/// Writes map.png, map.pgm, map.yaml, trajectory.tum and graph.g2o at intervals while mapping goes
+/// on, on a thread of its own. Each file is replaced completely or not at all. A map that would be
+/// too large for an image is drawn coarser. If it does not fit into memory, the files of the last
+/// refresh stay.
 class Refresher {
  public:
   /// `map` and `published` must live longer; `published` may be null. `interval` in seconds.
   Refresher(std::string folder, double interval, LiveMap* map, PublishedFiles* published);
 
-  /// Waits for the files that are being written.
+  /// Waits until the files being written are complete.
   ~Refresher();
   Refresher(const Refresher&) = delete;
   Refresher& operator=(const Refresher&) = delete;
 
-  /// Whether it is time for new content. That is at intervals, and not before ten times as long as
-  /// the last refresh took. Throws Error (kOutput) if that one failed.
+  /// Whether it is time for the next refresh: after the interval, and after ten times the time that
+  /// the last refresh took. Throws Error (kOutput) if the last refresh failed.
   bool IsDue() const;
 
-  /// Writes this; returns at once.
+  /// Begins to write the files; returns at once.
   void Refresh(RefreshContent content);
 
-  /// The number of scans in the files, once after each refresh.
+  /// After each refresh, returns once the number of scans in the files.
   std::optional<std::int64_t> TakeSaved();
 
-  /// Something to tell about the map files, once: they are drawn coarser, or were left out.
+  /// A message about the map files, returned once: they are drawn coarser, or were left out.
   std::optional<std::string> TakeNote();
 
  private:
@@ -77,7 +78,7 @@ class Refresher {
   Clock::time_point next_ = Clock::now();
   bool closing_ = false;
 
-  std::string last_note_;  // of the thread alone
+  std::string last_note_;  // used by the thread only
   std::thread thread_;
 };
 

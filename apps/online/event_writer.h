@@ -9,15 +9,15 @@
 
 namespace loopgrid {
 
-/// Writes what happens as JSON, an object a line, for other programs to steer by (the README has
-/// the schema). What is added goes out with Flush(). It waits for a reader that is slower than the
-/// robot: the lines then queue up, and the sender has to wait. Errors are Error (kOutput).
+/// Writes events for other programs, one JSON object a line (see README.md). Flush() writes the
+/// events added so far. It waits for a slow reader. Lines of the log then wait in the queue, and in
+/// the end the sender waits. Throws Error (kOutput).
 class EventWriter {
  public:
-  /// To nowhere.
+  /// Writes nothing.
   EventWriter() = default;
 
-  /// `path` may be `-`: standard output. A file is added to.
+  /// `path` may be `-` for standard output. Events are added to the end of a file.
   explicit EventWriter(const std::string& path);
 
   bool enabled() const { return static_cast<bool>(output_); }

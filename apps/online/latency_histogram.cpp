@@ -8,7 +8,7 @@ namespace loopgrid {
 namespace {
 
 constexpr double kShortest = 1e-6;  // seconds, the upper end of bin 0
-constexpr double kRatio = 1.02;     // of the ends of two bins
+constexpr double kRatio = 1.02;     // between the ends of two neighbouring bins
 
 }  // namespace
 

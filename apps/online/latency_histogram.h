@@ -5,13 +5,12 @@
 
 namespace loopgrid {
 
-/// Durations, counted in bins that are 2 % wide, so that any number of them takes the same memory.
+/// Counts durations in bins that are 2 % wide. The memory does not grow with their number.
 class LatencyHistogram {
  public:
   void Add(double seconds);
 
-  /// The duration that the share `quantile` (0..1) of all does not exceed, seconds, to 2 %; 0 if
-  /// there is none.
+  /// The quantile of the durations (`quantile` 0..1), seconds, exact to 2 %; 0 if there are none.
   double Quantile(double quantile) const;
 
   double max() const { return max_; }

@@ -47,7 +47,7 @@ void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
   ++status_.scans;
   if (update.tracked.node >= 0) ++status_.nodes;
   if (!update.tracked.matched) ++status_.unmatched;
-  // The search for the robot has taken much memory that is free again.
+  // The search for the robot in the old map used much memory. Return it to the system.
   if (update.tracked.localized && !status_.localized) malloc_trim(0);
   status_.localized = update.tracked.localized;
   if (is_new) status_.latency.Add(update.latency_seconds);
@@ -66,7 +66,7 @@ void LiveOutputs::StopRefreshing() { refresher_.reset(); }
 void LiveOutputs::Finish(const Slam& slam, const std::string& folder) {
   if (!view_) return;
   OnlineUpdate result;
-  result.tracked.scan = -1;  // none: all nodes have moved for the last time
+  result.tracked.scan = -1;  // no scan, only the final poses of the nodes
   result.nodes = std::make_shared<NodeStates>(
       NodeStates{.poses = slam.graph().poses, .covariances = slam.NodeCovariances()});
   map_.Add(result);

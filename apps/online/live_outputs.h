@@ -18,8 +18,8 @@
 
 namespace loopgrid {
 
-/// What shows the map while it grows: the files that are refreshed, the page, the status. For the
-/// mapping thread, which it never holds up for long.
+/// All that shows the map while it grows: the files that are refreshed, the page and the status.
+/// Used by the mapping thread; no call takes long.
 class LiveOutputs {
  public:
   /// Throws Error (kInput) if the page's address cannot be had.
@@ -29,16 +29,17 @@ class LiveOutputs {
   /// Null if there is no page.
   const ViewServer* view() const { return view_.get(); }
 
-  /// Takes a scan. `is_new`: it came just now, not out of the journal.
+  /// Takes a scan. `is_new`: it came from the stream, not from the journal.
   void Add(const OnlineUpdate& update, bool is_new);
 
-  /// To be called often. Throws Error (kOutput) if the files could not be refreshed.
+  /// Refreshes files and status when it is time. Has to be called often. Throws Error (kOutput) if
+  /// the files could not be refreshed.
   void Tick(OnlineMapper* mapper);
 
-  /// Files are not refreshed any more.
+  /// Ends the refreshing of files.
   void StopRefreshing();
 
-  /// Nothing more comes: viewers get the result, and the files that `folder` has now.
+  /// Call at the end: viewers get the final poses and the files in `folder`.
   void Finish(const Slam& slam, const std::string& folder);
 
  private:
@@ -57,7 +58,7 @@ class LiveOutputs {
   std::unique_ptr<Refresher> refresher_;
   OnlineStatus status_;
   std::int64_t refreshed_scans_ = 0;
-  bool has_warned_ = false;  // of scans that the live map has no room for
+  bool has_warned_ = false;  // that some scans do not fit into the live map
   Clock::time_point next_status_ = Clock::now();
 };
 

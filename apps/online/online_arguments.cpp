@@ -14,22 +14,19 @@ namespace loopgrid {
 namespace {
 
 constexpr const char* kOnlineFooter =
-    "Lines of a CARMEN log come in; without --follow, --listen or --connect from standard input.\n"
-    "When they end, or at SIGINT, SIGTERM or SIGHUP, all files of `run` are written to DIR, the\n"
-    "same bytes as `run` makes of the same lines. A second signal ends at once.\n"
-    "While they come, DIR has\n"
+    "Reads lines of a CARMEN log; without --follow, --listen or --connect from standard input.\n"
+    "When they end, or at SIGINT, SIGTERM or SIGHUP, all files of `run` are written to DIR, with\n"
+    "the same bytes that `run` makes of the same lines. A second signal ends the program at once.\n"
+    "Until then DIR has\n"
     "  journal.clf       the lines received so far, a log itself\n"
     "  session.json      the options that the session was begun with\n"
     "  map.png map.pgm map.yaml trajectory.tum graph.g2o\n"
     "                    as of a few seconds ago\n"
-    "After a crash, kill -9 included, --resume DIR goes on; the sender may begin anywhere it "
-    "likes\n"
-    "between its first line and the one after the last that was acknowledged.\n"
-    "Events are JSON, one a line: start, pose (of each scan; acknowledges its line), node, "
-    "closure,\n"
-    "optimization, warning, resumed, known, saved, end. If their reader stops reading, mapping "
-    "and\n"
-    "then the sender wait for it.";
+    "After a crash or kill -9, --resume DIR goes on. The sender may begin at any line from its\n"
+    "first one to the one after the last that was acknowledged.\n"
+    "Events are JSON, one a line: start, pose (of each scan; acknowledges its line), node,\n"
+    "closure, optimization, warning, resumed, known, saved, end. If the events are not read,\n"
+    "mapping waits, and then the sender.";
 
 std::vector<Argument> SourceArguments(OnlineOptions* options) {
   return {{.name = "--follow",
@@ -38,11 +35,11 @@ std::vector<Argument> SourceArguments(OnlineOptions* options) {
            .target = &options->follow},
           {.name = "--listen",
            .unit = "HOST:PORT",
-           .help = "Wait for a sender; a sender may come after another",
+           .help = "Wait for senders, one after the other",
            .target = &options->listen},
           {.name = "--connect",
            .unit = "HOST:PORT",
-           .help = "Fetch from a sender, again and again",
+           .help = "Connect to a sender; if there is none, try again without end",
            .target = &options->connect},
           {.name = "--once",
            .help = "End when the first sender that sent something has left [default: wait for the "
@@ -61,8 +58,7 @@ std::vector<Argument> SessionArguments(OnlineOptions* options) {
            .target = &options->resume},
           {.name = "--continue",
            .unit = "DIR",
-           .help = "Start in the map of this folder, of a session or a run; the robot finds itself "
-                   "in it",
+           .help = "Begin in the map of this session or run; the robot may be anywhere in it",
            .target = &options->continued}};
 }
 
@@ -77,7 +73,7 @@ std::vector<Argument> LiveArguments(OnlineOptions* options) {
            .target = &options->events},
           {.name = "--interval",
            .unit = "SECONDS",
-           .help = fmt::format("Between two refreshes of the files, {} to {:.0f} seconds",
+           .help = fmt::format("Time between two refreshes of the files, {} to {:.0f} seconds",
                                OnlineOptions::kShortestInterval, OnlineOptions::kLongestInterval),
            .target = &options->interval,
            .shows_default = true},

@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// The command `loopgrid online`, which sets `options` and acts on them.
+/// The command `loopgrid online`. It sets `options` and then runs with them.
 Command DescribeOnline(OnlineOptions* options);
 
 }  // namespace loopgrid

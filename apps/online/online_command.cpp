@@ -82,7 +82,7 @@ void Introduce(const OnlineOptions& options, const LineSource& source, const Vie
   events->Flush();
 }
 
-/// The events may not be written over what the session reads or keeps. Throws Error (kUsage).
+/// The events must not overwrite a file that the session reads or writes. Throws Error (kUsage).
 void RequireOwnPlaceForEvents(const OnlineOptions& options) {
   std::vector<std::string> taken = RunOutputNames();
   taken.insert(taken.end(), {kJournalName, kSessionName});
@@ -113,7 +113,7 @@ class SourceThread {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// After the end of the stream: throws what it ended with.
+  /// Call after the end of the stream: throws the error with which it ended, if any.
   void RethrowProblem() {
     if (thread_.joinable()) thread_.join();
     if (problem_) std::rethrow_exception(problem_);
@@ -134,7 +134,7 @@ class SourceThread {
   std::thread thread_;
 };
 
-/// Tells the user what has gone wrong at the source.
+/// Prints the problems of the source.
 void TellNotices(LineSource* source, ProgressBar* bar) {
   for (const std::string& notice : source->TakeNotices()) {
     bar->Clear();
@@ -142,7 +142,7 @@ void TellNotices(LineSource* source, ProgressBar* bar) {
   }
 }
 
-/// Maps what comes until the end of the stream.
+/// Maps the lines of the stream until its end.
 void MapStream(LineSource* source, LineQueue* queue, OnlineSession* session, LiveOutputs* live,
                ProgressBar* bar) {
   constexpr std::chrono::milliseconds kIdle(50);
@@ -157,7 +157,7 @@ void MapStream(LineSource* source, LineQueue* queue, OnlineSession* session, Liv
   }
 }
 
-/// Leaves the files of a run.
+/// Writes the files of a run.
 RunReport WriteFiles(const Stopwatch& stopwatch, const RunOptions& options, Journal* journal,
                      OnlineMapper* mapper, OutputDirectory* outputs, ProgressBar* bar) {
   journal->Sync();
@@ -183,8 +183,8 @@ void PrintSummary(const OnlineOptions& options, const RunReport& report) {
 void OnlineCommand(OnlineOptions options) {
   const Stopwatch stopwatch;
   options.Validate();
-  // What one thread allocates another frees here; with a pool for each thread, and large blocks in
-  // them, free memory would pile up.
+  // Memory is often allocated in one thread and freed in another. With a pool for each thread, free
+  // memory would accumulate in the pools.
   mallopt(M_ARENA_MAX, 2);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   CompleteOptions(&options);

@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// Maps lines as they come, until they end or a signal does; writes the files of a run, prints a
-/// summary. Throws Error.
+/// Maps lines as they arrive, until the stream ends or a signal arrives. Then writes the files of a
+/// run and prints a summary. Throws Error.
 void OnlineCommand(OnlineOptions options);
 
 }  // namespace loopgrid

@@ -14,7 +14,7 @@
 
 namespace loopgrid {
 
-/// Maps a log line by line, and says of each scan, as values, what became of it.
+/// Maps a log line by line. Gives the result for each scan to a function, as values.
 class OnlineMapper {
  public:
   using Sink = std::function<void(const OnlineUpdate&)>;
@@ -26,7 +26,7 @@ class OnlineMapper {
   /// mode, if the line is malformed.
   void AddLine(const ReceivedLine& line);
 
-  /// No more lines come: scans that were held back until the laser's mount is known are ready now.
+  /// Call after the last line. Scans that were held back to find the laser's mount are mapped now.
   void End();
 
   Slam* slam() { return &slam_; }
@@ -44,7 +44,8 @@ class OnlineMapper {
   CarmenDecoder decoder_;
   Slam slam_;
   RecordingClock clock_;
-  // When the latest lines came, as far back as that of the oldest scan that is held back.
+  // Arrival times of the latest lines, beginning with the line of the oldest scan that is held
+  // back.
   std::deque<std::chrono::steady_clock::time_point> arrivals_;
   std::vector<bool> accepted_;  // of the closures
   std::int64_t accepted_closures_ = 0;

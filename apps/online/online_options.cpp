@@ -11,7 +11,7 @@
 namespace loopgrid {
 namespace {
 
-/// Calls a parser of addresses; its errors name the option.
+/// Checks an address with `parse`. The message of an error names the option.
 void RequireAddress(const char* option, const std::string& address, const auto& parse) {
   if (address.empty()) return;
   try {
@@ -41,7 +41,7 @@ void OnlineOptions::Validate() const {
   if (!continued.empty() && !resume.empty()) {
     throw Error(ErrorCode::kUsage, "--continue and --resume: a resumed session is not a new one");
   }
-  // Written so that NaN does not pass.
+  // This form of the test also refuses NaN.
   if (!(interval >= kShortestInterval && interval <= kLongestInterval)) {
     throw Error(ErrorCode::kUsage, fmt::format("--interval is {}, expected {} to {}", interval,
                                                kShortestInterval, kLongestInterval));

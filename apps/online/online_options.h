@@ -7,7 +7,7 @@
 
 namespace loopgrid {
 
-/// What `loopgrid online` is asked to do.
+/// Options of `loopgrid online`.
 struct OnlineOptions {
   static constexpr double kShortestInterval = 0.01;    ///< seconds
   static constexpr double kLongestInterval = 86400.0;  ///< seconds
@@ -17,7 +17,7 @@ struct OnlineOptions {
   std::string listen;   ///< HOST:PORT to wait for senders at
   std::string connect;  ///< HOST:PORT of a sender
 
-  bool once = false;      ///< a socket's first sender is the only one
+  bool once = false;      ///< end after the first sender of a socket
   RunOptions run;         ///< run.out is the session's folder; run.log is set to its journal
   std::string resume;     ///< the folder of a session to go on with
   std::string continued;  ///< the folder of a session whose map the new one goes on with

@@ -74,7 +74,7 @@ void OnlineSession::Take(ReceivedLine line) {
   Map(line);
 }
 
-/// The journal's last line did not go on: it broke off.
+/// The journal's last line has no end, and the stream does not continue it: maps it as it is.
 void OnlineSession::TakeOpenEnd() {
   Map(*open_end_);
   open_end_.reset();

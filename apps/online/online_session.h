@@ -12,24 +12,24 @@
 
 namespace loopgrid {
 
-/// Lines on their way through the mapping thread: into the journal, then through the mapper, then
-/// to whoever waits for their events. What is in the journal at the start goes through the mapper
-/// alike.
+/// Takes lines through the mapping thread: each line goes to the journal, then to the mapper, and
+/// then its events are written. The lines that the journal has at the start go to the mapper in the
+/// same way.
 class OnlineSession {
  public:
-  /// Gets every scan; `is_new`: it came in the stream, not out of the journal.
+  /// Is called for every scan. `is_new`: it came from the stream, not from the journal.
   using Sink = std::function<void(const OnlineUpdate& update, bool is_new)>;
 
-  /// `events` gets the new scans only.
+  /// Events are written for new scans only.
   OnlineSession(const RunOptions& options, Journal* journal, EventWriter* events, Sink sink);
 
-  /// Takes what the journal holds. If `sent_again`, lines of the stream may be among it.
+  /// Maps the lines of the journal. `sent_again`: the stream may contain the same lines again.
   void Replay(bool sent_again);
 
-  /// The stream's next line. Throws Error.
+  /// Takes the stream's next line. Throws Error.
   void Add(ReceivedLine line);
 
-  /// The stream is over.
+  /// Call at the end of the stream.
   void End();
 
   OnlineMapper* mapper() { return &mapper_; }
@@ -48,7 +48,7 @@ class OnlineSession {
   OnlineMapper mapper_;
   bool replaying_ = false;
   std::optional<ResumeFilter> filter_;
-  std::optional<ReceivedLine> open_end_;  // the journal's last line, if it may still go on
+  std::optional<ReceivedLine> open_end_;  // the journal's last line, if the stream may continue it
 };
 
 }  // namespace loopgrid

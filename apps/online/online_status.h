@@ -11,7 +11,7 @@
 
 namespace loopgrid {
 
-/// What a running session tells about itself.
+/// The state of a running session, for status.json.
 struct OnlineStatus {
   std::string source;
   std::int64_t scans = 0;
@@ -19,7 +19,7 @@ struct OnlineStatus {
   std::int64_t constraints = 0;
   std::int64_t closures_tried = 0;
   std::int64_t closures_accepted = 0;
-  std::int64_t unmatched = 0;  ///< scans carried by odometry alone
+  std::int64_t unmatched = 0;  ///< scans that odometry alone placed
   bool localized = true;
   LatencyHistogram latency;  ///< of the scans that came since the start
   LogStatistics log;

@@ -38,14 +38,14 @@ constexpr auto kLinger = std::chrono::seconds(2);
 beast::string_view ToBeast(std::string_view text) { return {text.data(), text.size()}; }
 std::string_view ToStd(beast::string_view text) { return {text.data(), text.size()}; }
 
-// The system takes only this much more than the network carries, so that a client that reads slowly
-// makes its connection writable again after every few kilobytes.
+// Limits the bytes that the system buffers for sending. The connection of a client that reads
+// slowly then becomes writable again after every few kilobytes.
 void LimitUnsentBytes(int socket) {
   constexpr int kUnsent = 64 * 1024;
   setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof kUnsent);
 }
 
-// The object belongs to the operations that it waits for: it is destroyed when none is left.
+// The pending operations own the object. It is destroyed when there are none.
 class Connection : public HttpClientConnection, public std::enable_shared_from_this<Connection> {
  public:
   Connection(asio::io_context* io, HttpHub* hub) : stream_(*io), hub_(hub) {}
@@ -58,7 +58,7 @@ class Connection : public HttpClientConnection, public std::enable_shared_from_t
   bool HasBacklog() const override { return needs_snapshot_ || !backlog_.empty(); }
 
  private:
-  // A response on its way, with the body that it points to.
+  // A response being sent, and the body that it points to.
   struct Response {
     http::response<http::span_body<const char>> message;
     http::response_serializer<http::span_body<const char>> serializer{message};
@@ -99,7 +99,7 @@ class Connection : public HttpClientConnection, public std::enable_shared_from_t
 
 void Connection::Start(int socket) {
   error_code error;
-  stream_.socket().assign(tcp::v4(), socket, error);  // the kind of address plays no role here
+  stream_.socket().assign(tcp::v4(), socket, error);  // IPv4 or IPv6 makes no difference here
   if (error) {
     close(socket);
     return;
@@ -111,7 +111,7 @@ void Connection::Start(int socket) {
 void Connection::ReadRequest() {
   parser_.emplace();
   parser_->header_limit(kMaxHeader);
-  // One time limit for the whole header: a client that sends it byte by byte gets no more.
+  // One time limit for the whole header, also for a client that sends it byte by byte.
   stream_.expires_after(ClockDuration(hub_->options().request_timeout));
   http::async_read_header(
       stream_, buffer_, *parser_,
@@ -170,7 +170,7 @@ void Connection::Send(Reply reply) {
   SendPiece(response);
 }
 
-// The time limit is for each piece: a client may take as long as it likes while it takes something.
+// The time limit is for each piece, so a slow download may take long as long as it goes on.
 void Connection::SendPiece(std::shared_ptr<Response> response) {
   stream_.expires_after(ClockDuration(hub_->options().write_timeout));
   auto& serializer = response->serializer;
@@ -185,8 +185,8 @@ void Connection::SendPiece(std::shared_ptr<Response> response) {
 
 void Connection::HandleSent() {
   if (keeps_alive_) return ReadRequest();
-  // If the client is still sending, closing the connection now would make the system throw away
-  // what the client has not read yet.
+  // If the client is still sending, closing the connection now would discard what the client has
+  // not read yet.
   error_code ignored;
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
   stream_.expires_after(kLinger);

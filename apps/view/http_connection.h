@@ -12,34 +12,35 @@ class io_context;
 
 namespace loopgrid {
 
-/// What an HTTP server serves. It is asked on the server's thread.
+/// The content of an HTTP server. Called on the server's thread.
 class HttpContent {
  public:
   virtual ~HttpContent() = default;
 
   virtual Reply Answer(const Request& request) = 0;
 
-  /// Called once a batch: what has happened since, for all that follow events; null if nothing.
+  /// Called once for each batch: the events since the last call, for all viewers; null if there are
+  /// none.
   virtual std::shared_ptr<const std::string> TakeNews() = 0;
 
-  /// The state as of the last news, for a viewer that knows nothing.
+  /// The whole state as of the last batch, for a new viewer.
   virtual std::shared_ptr<const std::string> Snapshot() = 0;
 };
 
-/// A client, which may follow events.
+/// A connected client. A client that follows events is a viewer.
 class HttpClientConnection {
  public:
   virtual ~HttpClientConnection() = default;
 
-  /// Sends news to a viewer. If too much waits for it already, all of that is dropped, and the
-  /// viewer gets a fresh snapshot instead.
+  /// Sends events to a viewer. If too much is waiting to be sent, all of it is dropped, and the
+  /// viewer gets a new snapshot instead.
   virtual void Offer(const std::shared_ptr<const std::string>& news) = 0;
 
   /// Whether something waits to be sent to a viewer.
   virtual bool HasBacklog() const = 0;
 };
 
-/// What connections need of the service that they belong to.
+/// The functions of the service that its connections call.
 class HttpHub {
  public:
   virtual ~HttpHub() = default;
@@ -49,7 +50,7 @@ class HttpHub {
   /// From now on this client follows events.
   virtual void AddViewer(HttpClientConnection* viewer) = 0;
 
-  /// The connection is gone. Called once for each connection.
+  /// Called once for each connection, when it ends.
   virtual void Remove(HttpClientConnection* connection) = 0;
 
   virtual void CountRequest() = 0;

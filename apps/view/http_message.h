@@ -8,7 +8,7 @@
 
 namespace loopgrid {
 
-/// What the server looks at in a request.
+/// The parts of a request that the server uses.
 struct Request {
   std::string_view method;
   std::string_view target;
@@ -16,7 +16,7 @@ struct Request {
   std::string_view if_none_match;  ///< empty if not given
 };
 
-/// What a request gets. Independent of any HTTP library.
+/// The answer to a request. Does not depend on an HTTP library.
 struct Reply {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";

@@ -24,7 +24,8 @@ using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
-// After so long without news, viewers get an empty comment, which finds those that are gone.
+// After this time without events, viewers get an empty comment. Sending it finds viewers that are
+// gone.
 constexpr auto kSilence = std::chrono::seconds(15);
 
 std::string HostInUrl(const asio::ip::address& address) {
@@ -66,7 +67,7 @@ class HttpService::Impl : public HttpHub {
 
   void WaitUntilSent(double seconds) {
     std::unique_lock lock(mutex_);
-    // A batch may be under way, and without the last news. The one after it has them all.
+    // The present batch may lack the last events. The batch after it has all of them.
     const std::int64_t begun = batches_;
     sent_.wait_for(lock, ClockDuration(seconds),
                    [&] { return batches_ > begun + 1 && !has_backlog_; });
@@ -110,7 +111,7 @@ class HttpService::Impl : public HttpHub {
 
   void Accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (error) {  // most likely the process has no descriptor left: some may be closed soon
+      if (error) {  // the process probably has no descriptor left; some may be closed soon
         pause_.expires_after(kAcceptPause);
         pause_.async_wait([this](error_code) { Accept(); });
         return;
@@ -125,7 +126,7 @@ class HttpService::Impl : public HttpHub {
       const std::lock_guard lock(mutex_);
       if (counters_.connections >= options_.max_connections) {
         ++counters_.turned_away;
-        return;  // which closes the socket
+        return;  // the socket is closed here
       }
       ++counters_.connections;
     }
@@ -166,7 +167,7 @@ class HttpService::Impl : public HttpHub {
   bool has_backlog_ = false;
   HttpCounters counters_;
 
-  // Only the thread uses these.
+  // Only the service's thread uses these.
   std::vector<HttpClientConnection*> viewers_;
   Clock::time_point last_news_ = Clock::now();
   // Destroyed before the members above, which connections use at their end.

@@ -12,9 +12,9 @@ namespace loopgrid {
 struct HttpCounters {
   int connections = 0;           ///< open now
   int viewers = 0;               ///< of them, those that follow events
-  std::int64_t requests = 0;     ///< that were well-formed, whatever the answer
+  std::int64_t requests = 0;     ///< well-formed requests, with any answer
   std::int64_t turned_away = 0;  ///< connections over the limit
-  std::int64_t skips = 0;        ///< how often a slow viewer skipped ahead
+  std::int64_t skips = 0;        ///< how often a slow viewer got a snapshot instead of events
 };
 
 /// An HTTP/1.1 server for GET and HEAD, with server-sent events, on a thread of its own. A
@@ -37,7 +37,7 @@ class HttpService {
   std::string url() const;
   bool is_loopback() const;
 
-  /// Waits until all who follow events have been sent what has happened so far; at most `seconds`.
+  /// Waits until all events so far are sent to all viewers, at most `seconds`.
   void WaitUntilSent(double seconds);
 
   HttpCounters counters() const;

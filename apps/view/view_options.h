@@ -11,16 +11,17 @@ struct ViewServerOptions {
   int port = 0;                    ///< 0: any that is free
   int max_connections = 512;       ///< further ones are closed at once
   double request_timeout = 10.0;   ///< for a whole request header, also between two, seconds
-  double write_timeout = 30.0;     ///< a client that takes no byte for so long is dropped, seconds
-  double batch_interval = 0.033;   ///< viewers get news at most this often, seconds
-  std::size_t max_backlog = std::size_t{1} << 20;  ///< what may wait for a slow viewer, bytes
+  double write_timeout =
+      30.0;  ///< a client that takes no byte for this time is disconnected, seconds
+  double batch_interval = 0.033;  ///< shortest time between two batches of events, seconds
+  std::size_t max_backlog = std::size_t{1} << 20;  ///< most bytes waiting for a slow viewer
 
   /// Throws Error (kUsage) naming the field, its value and its bound.
   void Validate() const;
 };
 
-/// What `[HOST:]PORT` says, the rest being defaults. HOST may be in brackets (IPv6). Throws Error
-/// (kUsage) if it makes no sense.
+/// Options with the address `[HOST:]PORT` and the other defaults. HOST may be in brackets (IPv6).
+/// Throws Error (kUsage) for other texts.
 ViewServerOptions ParseViewAddress(std::string_view address);
 
 }  // namespace loopgrid

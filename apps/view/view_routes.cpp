@@ -111,8 +111,8 @@ Reply ViewRoutes::File(std::string_view name, std::string_view type) const {
   return reply;
 }
 
-// A tile that is asked for with its version may be kept by the client: the next version has another
-// address.
+// If a tile is asked for with its version, the client may keep it, because the next version has
+// another address.
 Reply ViewRoutes::Tile(std::string_view path, std::string_view query,
                        std::string_view if_none_match) const {
   TileId id;

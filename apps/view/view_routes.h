@@ -10,10 +10,11 @@
 
 namespace loopgrid {
 
-/// Knows which content each address has.
+/// Answers requests: finds the content for each address.
 class ViewRoutes {
  public:
-  /// `run` names this run of the program: versions of tiles are counted anew in each run.
+  /// `run` identifies this run of the program, because each run counts the versions of tiles from
+  /// 0.
   ViewRoutes(std::string run, HostCheck hosts, const MapTiles* tiles, const PublishedFiles* files);
 
   /// Every reply has the headers that protect the page.

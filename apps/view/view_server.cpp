@@ -84,8 +84,8 @@ class ViewServer::Impl : public HttpContent {
   }
 
  private:
-  // A page that was told the end asks for the last tiles, and leaves when it has them. Other
-  // viewers ask for nothing.
+  // After the event `end` a page fetches the last tiles and closes its connection. Other viewers
+  // fetch nothing.
   void WaitForLastRequests(Clock::time_point deadline) const {
     std::int64_t requests = -1;
     Clock::time_point quiet_since;
@@ -98,7 +98,7 @@ class ViewServer::Impl : public HttpContent {
     }
   }
 
-  // Applies the updates that have come. True if nothing more will come.
+  // Applies the updates that have arrived. True after the last one.
   bool TakeInbox() {
     std::vector<OnlineUpdate> updates;
     bool ending = false;

@@ -11,9 +11,10 @@
 
 namespace loopgrid {
 
-/// Serves the page and the HTTP API behind it, on a thread of its own. Viewers share what they are
-/// sent. A viewer that is too slow skips ahead to a fresh state, so none takes more memory than
-/// `max_backlog` nor slows the others down. Only GET and HEAD; no request changes anything.
+/// Serves the page and the HTTP API behind it, on a thread of its own. All viewers share the memory
+/// of the events. A viewer that is too slow gets the whole state instead of the events it has
+/// missed. So no viewer needs more memory than `max_backlog` or slows the others down. Only GET and
+/// HEAD are allowed; no request changes anything.
 class ViewServer {
  public:
   /// Binds. `map` and `files` must live longer than the server. Throws Error: kUsage if an option
@@ -29,12 +30,12 @@ class ViewServer {
   std::string url() const;   ///< of the page
   bool is_loopback() const;  ///< false: other machines can reach it
 
-  /// Hands an update to all viewers; one with a negative index of the scan tells of nodes and
-  /// closures only. Returns at once.
+  /// Sends an update to all viewers. If the index of its scan is negative, it contains only nodes
+  /// and closures. Returns at once.
   void Add(const OnlineUpdate& update);
 
-  /// Tells all viewers that nothing more will come. Waits until they have been sent everything and
-  /// have fetched the last pieces of the map, at most two seconds.
+  /// Sends the event `end` to all viewers. Waits, at most two seconds, until everything is sent and
+  /// viewers have fetched the last tiles.
   void Finish();
 
   using Counters = HttpCounters;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxPoses = 64;     // in one batch
 constexpr std::size_t kMaxRefused = 200;  // remembered
-constexpr double kMaxStep = 5.0;  // metres; a robot that is this far off begins a new session
+constexpr double kMaxStep = 5.0;          // metres; longer steps are not motions of the robot
 
 std::string ServerSentEvent(std::string_view name, std::string_view json) {
   return fmt::format("event: {}\ndata: {}\n\n", name, json);
@@ -28,7 +28,7 @@ std::string ObjectText(const auto& add_members) {
   return json.Take();
 }
 
-/// Text of a JSON object with one member, an array of what is JSON text already.
+/// Text of a JSON object with one member: an array of elements that are already JSON text.
 std::string ObjectWithArray(const char* name, const auto& elements) {
   return ObjectText([&](JsonWriter* json) {
     json->Key(name).BeginArray();
@@ -93,8 +93,8 @@ void ViewState::TakeScan(const OnlineUpdate& update) {
   if (poses_.size() > kMaxPoses) poses_.pop_front();
 }
 
-/// How far the robot has moved since the last scan, metres. Both ends are taken from the graph as
-/// it is now: a correction of the graph moves both, and is no motion of the robot.
+/// The distance between the robot's poses at the last scan and at this one, metres. Both poses are
+/// relative to the graph as it is now, so corrections of the graph do not count as motion.
 double ViewState::StepTo(const OnlineUpdate& update) const {
   if (!last_place_ || last_place_->node < 0) return 0.0;
   const auto node = static_cast<std::size_t>(last_place_->node);

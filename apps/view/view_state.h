@@ -16,26 +16,27 @@
 
 namespace loopgrid {
 
-/// What a viewer knows: pose, graph, closures, counters. Turns updates into server-sent events, as
-/// text. Their covariances are in the map frame. That of the pose is relative to the map; those of
-/// nodes are as Slam::NodeCovariances() gives them. One thread may use an object at a time.
+/// The state that viewers have: pose, graph, closures, counters. Makes server-sent events, as text,
+/// from updates. Covariances are in the map frame. That of the pose is relative to the first node;
+/// those of nodes are relative to the last node, see Slam::NodeCovariances(). One thread may use an
+/// object at a time.
 class ViewState {
  public:
-  /// `run` names this run of the program; `resolution` is that of the map, metres.
+  /// `run` identifies this run of the program; `resolution` is that of the map, metres.
   ViewState(std::string run, double resolution);
 
   /// Takes a scan and what it has changed; if its index is negative, only nodes and closures.
   void Apply(const OnlineUpdate& update);
 
-  /// Nothing more will come.
+  /// Call after the last update.
   void End() { ended_ = true; }
 
-  /// Events that lead from the state at the last call to this one, the tiles beside it; empty if
-  /// nothing has changed. Nodes that have moved are held back unless `with_moved_nodes`: they are
-  /// many. Of the poses only the newest 64 are told.
+  /// Events with all changes since the last call, and with `tiles`; empty if nothing has changed.
+  /// Nodes that have moved are included only if `with_moved_nodes`, because they are many. Of the
+  /// poses only the newest 64 are included.
   std::string TakeChanges(const std::vector<TileVersion>& tiles, bool with_moved_nodes);
 
-  /// One event with everything, for a viewer that knows nothing.
+  /// One event with the whole state, for a new viewer.
   std::string Snapshot(const std::vector<TileVersion>& tiles) const;
 
   const std::string& run() const { return run_; }
@@ -67,7 +68,7 @@ class ViewState {
   bool ended_ = false;
   bool end_told_ = false;
 
-  std::deque<std::string> poses_;  // JSON, not told yet
+  std::deque<std::string> poses_;  // JSON, not sent yet
   std::string last_pose_;          // JSON, empty if there was none
 
   std::vector<Node> nodes_;

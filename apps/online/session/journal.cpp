@@ -29,7 +29,7 @@ constexpr std::string_view kGzip = "\x1F\x8B";
               path + ": " + doing + ": " + std::generic_category().message(reason));
 }
 
-/// What is left of a line that broke off once its last field, which may be cut, is gone.
+/// An unfinished line without its last field, because that field may be cut short.
 std::string_view ClosedText(std::string_view bytes) {
   const bool too_long = bytes.size() - (bytes.ends_with('\r') ? 1 : 0) > LineReader::kMaxLineLength;
   return too_long ? bytes : WithoutCutField(bytes);
@@ -39,7 +39,7 @@ std::string_view ClosedText(std::string_view bytes) {
 
 std::string JournalText(const ReceivedLine& line) {
   if (line.too_long) return std::string(LineReader::kMaxLineLength + 1, '#');
-  // A reader takes one CR for a part of the line's end.
+  // A reader takes one CR as a part of the line end, so a second one is added.
   return line.text.ends_with('\r') ? line.text + '\r' : line.text;
 }
 
@@ -143,7 +143,7 @@ void Journal::Write(std::string_view bytes) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       const int reason = errno;
-      // What this leaves behind if it fails is a line without end, which a resumed session mends.
+      // If this fails, a line without end stays in the file. A resumed session repairs it.
       if (ftruncate(descriptor_, start) == 0) size_ = start;
       errno = reason;
       FailAtJournal(path_, "cannot write");

@@ -12,14 +12,14 @@
 
 namespace loopgrid {
 
-/// The lines received so far, in a file that is a CARMEN log itself: to go on from after a crash,
-/// to correct at the end, for `loopgrid run` to map again. A line is with the operating system when
-/// Append() returns, so that it survives the end of the process, however sudden; it is on the disk
-/// a second later. Errors are Error (kOutput) and begin `file: `; the file then ends with the last
-/// line that could be written whole.
+/// The file of the lines received so far. It is itself a CARMEN log. A session resumes from it, the
+/// corrected log is made of it, and `loopgrid run` can map it. When Append() returns, the operating
+/// system has the line, so the line is kept even if the process is killed. It is on the disk a
+/// second later. Throws Error (kOutput) `file: ...`; the file then ends with the last line that
+/// could be written completely.
 class Journal {
  public:
-  /// Opens the file, making it where it is missing.
+  /// Opens the file, or makes it.
   explicit Journal(const std::string& path);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -28,22 +28,24 @@ class Journal {
   const std::string& path() const { return path_; }
   bool empty() const { return size_ == 0; }
 
-  /// Calls `visit` for each line, as it was received. Throws Error (kInput) if it cannot be read.
+  /// Calls `visit` for each line, as it was received. Throws Error (kInput) if the file cannot be
+  /// read.
   void Read(const std::function<void(ReceivedLine)>& visit) const;
 
-  /// Whether the last line has no end: the stream broke off in it, or the process while writing it.
+  /// Whether the last line has no line end, because the stream or the process ended within it.
   bool has_open_end() const { return !open_end_.empty(); }
 
-  /// Adds a line. A last line without end gets one first, and loses the field that was cut short.
+  /// Adds a line. If the last line has no end, it first loses its last field, which may be cut
+  /// short, and gets a line end.
   void Append(const ReceivedLine& line);
 
   /// Whether the last line, which has no end, may be the beginning of `line`.
   bool IsContinuedBy(const ReceivedLine& line) const;
 
-  /// Makes `line` of the last line, which is its beginning.
+  /// Replaces the last line, which is the beginning of `line`, by `line`.
   void Complete(const ReceivedLine& line);
 
-  /// Puts what was written on the disk, now.
+  /// Writes everything to the disk now.
   void Sync();
 
  private:
@@ -58,7 +60,7 @@ class Journal {
   std::int64_t size_ = 0;
   std::string open_end_;  // the bytes of a last line that has no end
 
-  mutable std::mutex mutex_;  // of what follows; the syncing thread's
+  mutable std::mutex mutex_;  // guards the members below, which the syncing thread uses too
   std::condition_variable wake_;
   bool unsynced_ = false;
   bool closing_ = false;
@@ -66,10 +68,10 @@ class Journal {
   std::thread syncing_;
 };
 
-/// The bytes that read back as this line, but for its end.
+/// The bytes in the file that are read as this line, without its end.
 std::string JournalText(const ReceivedLine& line);
 
-/// A first line that would make the file look packed or binary becomes a comment.
+/// Makes a comment of a first line that would make the file look gzipped or binary.
 void KeepReadable(ReceivedLine* first);
 
 }  // namespace loopgrid

@@ -14,7 +14,7 @@ std::uint64_t HashOf(const ReceivedLine& line) {
   return line.too_long ? kTooLong : std::hash<std::string_view>()(line.text);
 }
 
-/// Malformed ones may well repeat, they tell nothing.
+/// Whether it is a well-formed laser line. Malformed lines may repeat, so they cannot show a place.
 bool IsLaserLine(const ReceivedLine& line) {
   CarmenLaserMessage ignored;
   return IsLaser(TagOf(line.text)) && ParseLaserLine(line.text, &ignored).empty();
@@ -61,8 +61,9 @@ void ResumeFilter::End(const PassOn& pass_on) {
   }
 }
 
-/// Fills `places_`: the session's beginning if the stream begins like it; then those that all held
-/// lines stand before; then the others. The latest come first.
+/// Fills `places_`. First comes the beginning of the session, if the stream begins in the same way.
+/// Then come the places that all held lines stand before, then the others; in both groups the
+/// latest come first.
 void ResumeFilter::Locate(Hash laser_line) {
   std::vector<std::size_t> unlike;
   for (std::size_t place = journal_.size(); place-- > 0;) {
@@ -89,7 +90,8 @@ void ResumeFilter::Compare(ReceivedLine line, const PassOn& pass_on) {
   if (places_[place_] + alike_ == journal_.size()) Settle(pass_on);
 }
 
-/// To the next place from where the journal goes on like the stream has so far, `line` included.
+/// Moves to the next place from which the journal has the same lines as the stream so far, with
+/// `line`.
 bool ResumeFilter::MoveToNextPlace(Hash line) {
   const auto begin = journal_.begin() + static_cast<std::ptrdiff_t>(places_[place_]);
   const auto end = begin + static_cast<std::ptrdiff_t>(alike_);
@@ -104,7 +106,7 @@ bool ResumeFilter::MoveToNextPlace(Hash line) {
   return false;
 }
 
-/// How many of the held lines, from the last one back, the journal has right before `place`.
+/// Number of held lines, counted back from the last one, that the journal has right before `place`.
 std::size_t ResumeFilter::HeldBefore(std::size_t place) const {
   std::size_t count = 0;
   while (count < held_.size() && count < place &&
@@ -114,7 +116,7 @@ std::size_t ResumeFilter::HeldBefore(std::size_t place) const {
   return count;
 }
 
-/// How many of the held lines, from the first one on, are those that the journal ends with.
+/// Number of held lines, counted from the first one, with which the journal ends.
 std::size_t ResumeFilter::HeldAtEnd() const {
   std::size_t count = std::min(held_.size(), journal_.size() - after_laser_);
   while (!std::equal(held_hashes_.begin(),
@@ -131,7 +133,7 @@ bool ResumeFilter::HeldIsKnown() const {
          journal_.end();
 }
 
-/// The place is found: of the held lines, those that do not stand before it are new.
+/// Called when the place is found. Held lines that the journal does not have before it are new.
 void ResumeFilter::Settle(const PassOn& pass_on) {
   const std::size_t count_new = held_.size() - HeldBefore(places_[place_]);
   known_lines_ += static_cast<std::int64_t>(alike_ + held_.size() - count_new);
@@ -139,7 +141,7 @@ void ResumeFilter::Settle(const PassOn& pass_on) {
   Finish(0, count_new, pass_on);
 }
 
-/// Passes the held lines of this range on, forgets everything; from now on all is new.
+/// Passes on the held lines in this range and ends the search. All later lines are new.
 void ResumeFilter::Finish(std::size_t first_new, std::size_t last_new, const PassOn& pass_on) {
   state_ = State::kDone;
   known_lines_ += static_cast<std::int64_t>(first_new);

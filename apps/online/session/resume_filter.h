@@ -10,33 +10,35 @@
 
 namespace loopgrid {
 
-/// Knows again what a sender sends once more after a session was resumed, from the beginning or
-/// from anywhere, so that no line counts twice. The first well-formed laser line of the stream is
-/// looked up among the journal's: at the same place if the stream begins like the session, else the
-/// latest place from where the lines go on alike to the journal's end, else where they stay alike
-/// longest. From there stream and journal are compared line by line; what differs or lies beyond is
-/// new, and so is everything if the first laser line is. Lines that a log repeats within what was
-/// sent twice may thus be passed over or doubled; distinct ones never are.
+/// Recognises lines that a sender sends again after a session was resumed, so that no line counts
+/// twice. The sender may begin at any line. The first well-formed laser line of the stream is
+/// searched for in the journal. If the stream begins like the session, it is taken to be there.
+/// Else it is at the latest place from which all lines are equal up to the journal's end; else
+/// where the most lines are equal. From there stream and journal are compared line by line. A line
+/// that differs, or comes after the journal's end, is new. If the journal does not have the first
+/// laser line, all lines are new. If a log repeats lines, repeated lines may be passed over or
+/// taken twice. Lines that differ from all others never are.
 class ResumeFilter {
  public:
   using PassOn = std::function<void(ReceivedLine)>;
 
-  /// At most so much is held until the first laser line shows where the stream begins.
+  /// At most this much is held until the first laser line shows where the stream begins.
   static constexpr std::size_t kMaxHeldBytes = std::size_t{8} << 20;
 
-  /// The journal's next line. Lines of earlier sessions in it are forgotten: nobody sends them.
+  /// Takes the journal's next line. Lines of earlier sessions are left out, because they are not
+  /// sent again.
   void AddJournalLine(const ReceivedLine& line);
 
-  /// The stream's next line; calls `pass_on` for lines that are new.
+  /// Takes the stream's next line. Calls `pass_on` for lines that are new.
   void Add(ReceivedLine line, const PassOn& pass_on);
 
-  /// The stream is over.
+  /// Call at the end of the stream.
   void End(const PassOn& pass_on);
 
-  /// How many lines were not passed on so far because the journal has them.
+  /// Number of lines not passed on so far because the journal has them.
   std::int64_t known_lines() const { return known_lines_; }
 
-  /// Whether all that comes is new; nothing is remembered any more.
+  /// Whether all later lines are new. The filter then holds no lines.
   bool done() const { return state_ == State::kDone; }
 
  private:
@@ -54,7 +56,7 @@ class ResumeFilter {
 
   State state_ = State::kHolding;
   std::vector<Hash> journal_;
-  std::size_t after_laser_ = 0;  // of the journal: behind its last laser line
+  std::size_t after_laser_ = 0;  // index in the journal after its last laser line
 
   std::vector<ReceivedLine> held_;  // of the stream, before its first laser line
   std::vector<Hash> held_hashes_;

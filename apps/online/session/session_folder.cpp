@@ -41,7 +41,7 @@ void Adopt(const MappingOption& option, const Value& stored, const SessionReques
   *value = stored;
 }
 
-/// Whether a folder has a file of this name. Throws Error (kInput) if that cannot be found out.
+/// Whether a folder has a file of this name. Throws Error (kInput) if the folder cannot be read.
 bool Exists(const std::string& folder, const char* name) {
   std::error_code error;
   const fs::file_status status = fs::status(folder + "/" + name, error);
@@ -50,7 +50,7 @@ bool Exists(const std::string& folder, const char* name) {
   throw Error(ErrorCode::kInput, fmt::format("{}: cannot be read: {}", folder, error.message()));
 }
 
-/// The lines that another session, or a run, was made of.
+/// The file with the lines of another session or run.
 std::string LinesOf(const std::string& folder) {
   for (const char* name : {kJournalName, "corrected.clf"}) {
     if (Exists(folder, name)) return folder + "/" + name;

@@ -10,18 +10,18 @@
 
 namespace loopgrid {
 
-/// Which session is asked for.
+/// The session to begin, to resume or to continue.
 struct SessionRequest {
   RunOptions run;         ///< run.out is the session's folder; run.log is set to its journal
   std::string resume;     ///< the folder of a session to go on with; empty: a new one
   std::string continued;  ///< the folder of a session whose map the new one goes on with
 
-  /// Which options that decide the result were given; the others come from a resumed session.
+  /// Keys of the options on the command line; the others come from a resumed session.
   std::set<std::string> given;
 };
 
-/// The folder of a session, held against other processes: its journal, and what it was started
-/// with in session.json.
+/// The folder of a session, locked against other processes. It has the journal, and in session.json
+/// the options that the session was begun with.
 class SessionFolder {
  public:
   /// Prepares `outputs` (which are in the folder request->run.out). Begins a session, or resumes
@@ -31,7 +31,7 @@ class SessionFolder {
   /// it cannot be read; kUsage if an option contradicts the resumed session's.
   SessionFolder(SessionRequest* request, OutputDirectory* outputs);
 
-  /// Leaves nothing of a session in which nothing was received.
+  /// If nothing was received, removes the files of the session.
   ~SessionFolder();
   SessionFolder(const SessionFolder&) = delete;
   SessionFolder& operator=(const SessionFolder&) = delete;

@@ -4,21 +4,20 @@
 
 namespace loopgrid {
 
-/// How long to wait before each attempt at something that keeps failing: ever longer.
+/// The pauses between attempts at something that keeps failing: each is longer than the one before.
 class BackOff {
  public:
   /// Both in seconds.
   BackOff(double first, double longest) : first_(first), longest_(longest), next_(first) {}
 
-  /// How long to wait before the next attempt, seconds: twice as long as the last time, up to the
-  /// longest.
+  /// The pause before the next attempt, seconds: twice the last one, up to the longest.
   double Next() {
     const double pause = std::min(next_, longest_);
     next_ = 2.0 * pause;
     return pause;
   }
 
-  /// An attempt has worked: begins again with the first pause.
+  /// Call after a successful attempt: the next pause is the first one again.
   void Reset() { next_ = first_; }
 
  private:

@@ -21,7 +21,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-// The system itself waits for minutes for a host that does not answer.
+// The system would wait for minutes for a host that does not answer.
 constexpr std::chrono::seconds kPatience{10};
 
 }  // namespace
@@ -54,7 +54,7 @@ class ConnectSource::Client {
   tcp::resolver resolver_{io_};
   tcp::socket socket_{io_};
   asio::steady_timer pause_{io_};     // before the next attempt
-  asio::steady_timer patience_{io_};  // with this one
+  asio::steady_timer patience_{io_};  // limit for the present attempt
   BackOff back_off_;
 
   LineInlet* inlet_ = nullptr;  // while running
@@ -93,7 +93,7 @@ void ConnectSource::Client::Dial(const tcp::resolver::results_type& endpoints) {
     if (!cancelled) socket_.close(ignored);
   });
   asio::async_connect(socket_, endpoints, [this](const error_code& error, const tcp::endpoint&) {
-    // No timer to cancel any more: it has just closed the socket.
+    // If there is no timer to cancel, it has expired and has closed the socket.
     const bool in_time = patience_.cancel() > 0;
     if (error || !in_time) {
       Fail("cannot connect: " + (in_time ? error.message() : "no answer"));
@@ -140,7 +140,7 @@ void ConnectSource::Client::TakeBytes(std::string_view bytes) {
   WaitForBytes();
 }
 
-/// Gives out what the sender sent last, also without a line end. False once the queue is closed.
+/// Passes on the sender's last line, also without a line end. False if the queue is closed.
 bool ConnectSource::Client::FinishLines() {
   sent_something_ = sent_something_ || check_.holds_bytes();
   return inlet_->Add(check_.Rest()) && inlet_->Finish();

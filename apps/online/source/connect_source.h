@@ -16,12 +16,12 @@ struct ConnectOptions {
   double longest_pause = 10.0;   ///< ... up to this, until something was received
 };
 
-/// Lines that are fetched over TCP. While there is no connection, further attempts are made,
-/// without end. A sender whose first bytes are no log (see SenderCheck) is left, and counts as a
-/// failed attempt. The last line of each connection is given out even if it has no end.
+/// Lines that are fetched over TCP. While there is no connection, further attempts are made without
+/// end. A sender whose first bytes are no log (see SenderCheck) is disconnected and counts as a
+/// failed attempt. The last line of each connection is passed on even if it has no end.
 class ConnectSource : public LineSource {
  public:
-  /// Throws Error (kUsage) for port 0. Nothing is dialled before Run().
+  /// Throws Error (kUsage) for port 0. Run() makes the first attempt.
   explicit ConnectSource(const ConnectOptions& options);
   ~ConnectSource() override;
 

@@ -43,15 +43,16 @@ Descriptor OpenIfThere(const std::string& path) {
   return file;
 }
 
-/// Waits until a file is written to. Not all file systems report that: those over a network do not.
+/// Waits until a file is written to. Some file systems, such as those over a network, do not report
+/// it.
 class FileWatch {
  public:
   FileWatch() : inotify_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {}
 
-  /// Watches this file from now on, and no other.
+  /// Watches this file from now on, and stops watching the one before.
   void Watch(const Descriptor& file) {
     if (watch_ >= 0) inotify_rm_watch(inotify_.get(), watch_);
-    // Not by its name: that may belong to another file by now.
+    // Its name may already belong to another file, so the descriptor is used.
     const std::string path = "/proc/self/fd/" + std::to_string(file.get());
     watch_ = inotify_add_watch(inotify_.get(), path.c_str(), IN_MODIFY);
   }
@@ -99,7 +100,7 @@ void FollowSource::Run(LineQueue* queue) {
       continue;
     }
     if (file_) {
-      // It may have grown since it was read, just before its successor took its name.
+      // The old file may have grown after it was read and before the new one took its name.
       if (!ReadToEnd(&inlet)) break;
       inlet.Finish();
       counters_.Count(&SourceCounters::rotations);
@@ -130,7 +131,7 @@ bool FollowSource::ReadToEnd(LineInlet* inlet) {
 bool FollowSource::HasShrunk() const { return file_ && StatusOf(file_, path_).st_size < offset_; }
 
 /// The file that has the name now, if it is not the open one. A new file is ignored while it is
-/// empty: its writer may still be writing to the old one.
+/// empty, because the writer may still write to the old one.
 Descriptor FollowSource::OpenSuccessor() const {
   struct stat named = {};
   if (stat(path_.c_str(), &named) != 0) return {};

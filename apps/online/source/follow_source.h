@@ -12,14 +12,14 @@
 
 namespace loopgrid {
 
-/// Lines of a file that is being written, from its start on, without end. The last line waits until
-/// it is complete. A file that is not there yet is waited for. When another file takes the name
-/// (rotation), the old one is read to its end first, and left once the new one is not empty. A file
-/// that shrinks is read from its beginning again.
+/// Lines of a file that is being written, from its beginning on, without end. The last line is
+/// passed on when it is complete. If the file does not exist, it waits for it. When another file
+/// takes the name (rotation), the old file is read to its end first. It is closed when the new one
+/// is not empty. A file that shrinks is read from its beginning again.
 ///
-/// The file is looked at whenever it changes, and every 50 ms in any case. Two things can happen
-/// unseen between two looks: a file shrinks and grows beyond its old size, and a file is rotated
-/// twice, whose middle one is then not read.
+/// The file is checked whenever it changes, and every 50 ms. Two things between two checks are not
+/// noticed: a file that shrinks and grows beyond its old size; and a second rotation, so that the
+/// file in the middle is not read.
 class FollowSource : public LineSource {
  public:
   /// Throws Error (kInput) if the folder does not exist, or if the name belongs to something that
@@ -43,8 +43,8 @@ class FollowSource : public LineSource {
 
   std::string path_;
   WakeUp wake_up_;
-  Descriptor file_;          // none: it is not there yet
-  std::int64_t offset_ = 0;  // how far it was read
+  Descriptor file_;          // none while it does not exist
+  std::int64_t offset_ = 0;  // number of bytes read
   StartCheck check_;
   SharedCounters counters_;
 };

@@ -16,11 +16,11 @@ class LineInlet {
   LineInlet(const LineInlet&) = delete;
   LineInlet& operator=(const LineInlet&) = delete;
 
-  /// Takes bytes that have just arrived; waits while the queue is full. False once it is closed.
+  /// Takes bytes that have just arrived. Waits while the queue is full. False if it is closed.
   bool Add(std::string_view bytes);
 
-  /// The stream is over: pushes what is left of it, as a line that is not terminated. Bytes added
-  /// after that begin a new stream. False once the queue is closed.
+  /// Call at the end of the stream: pushes the rest of it, as a line that is not terminated. Bytes
+  /// added after that begin a new stream. False if the queue is closed.
   bool Finish();
 
   /// Whether the last Add() completed a line.

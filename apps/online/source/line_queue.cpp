@@ -5,8 +5,8 @@
 namespace loopgrid {
 namespace {
 
-/// The memory that a line takes beside its text. It counts too, so that many empty lines fill the
-/// queue as well.
+/// The memory of a line. It includes more than the text, so that many empty lines fill the queue
+/// too.
 std::size_t Cost(const ReceivedLine& line) { return line.text.size() + sizeof(ReceivedLine); }
 
 }  // namespace

@@ -13,29 +13,29 @@ namespace loopgrid {
 /// A line of the stream, without its end (LF or CRLF).
 struct ReceivedLine {
   std::string text{};
-  bool terminated = true;  ///< false: the stream broke off within it
+  bool terminated = true;  ///< false: the stream ended within it
   bool too_long = false;   ///< it was longer than allowed, and `text` is empty
   std::chrono::steady_clock::time_point arrival{};
 };
 
-/// Lines on their way from one source to one mapper, bounded in bytes. A full queue makes the
-/// source wait: it stops reading, and pipes and sockets slow their sender down. Nothing is dropped.
+/// A queue of lines from one source to one mapper, limited in bytes. When the queue is full, the
+/// source waits and reads nothing. Then pipes and sockets make the sender wait. No line is dropped.
 class LineQueue {
  public:
   explicit LineQueue(std::size_t max_bytes = std::size_t{8} << 20);
 
-  /// Waits for room; false once the queue is closed. For the source's thread.
+  /// Waits for room. False if the queue is closed. Called by the source's thread.
   bool Push(ReceivedLine line);
 
-  /// Waits until Pop() need not wait; false if that took longer than `patience`.
+  /// Waits until Pop() would return at once. False if that takes longer than `patience`.
   bool Wait(std::chrono::milliseconds patience);
 
-  /// Waits for a line; false at the end: Close() was called and all lines are out.
+  /// Waits for a line. False at the end: the queue is closed and empty.
   bool Pop(ReceivedLine* line);
 
-  /// No more lines are taken; those in the queue can still be popped. The source calls it when it
-  /// ends. A mapper that gives up calls it too, because the source may be waiting for room. Any
-  /// thread may call it.
+  /// Closes the queue: Push() takes no more lines, but Pop() returns those in the queue. The source
+  /// calls it at its end. A mapper that stops early has to call it too, because the source may be
+  /// waiting for room. Any thread may call it.
   void Close();
 
   struct Counters {

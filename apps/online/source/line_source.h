@@ -8,14 +8,14 @@
 
 namespace loopgrid {
 
-/// What a source has met so far. Counters that do not apply to its kind stay 0.
+/// Counters of a source. Those that do not apply to its kind stay 0.
 struct SourceCounters {
   std::int64_t connections = 0;  ///< senders that were read from, one after the other
   std::int64_t refused = 0;      ///< senders turned away: another one was sending, or no log came
   std::int64_t failures = 0;     ///< attempts to connect that failed
   std::int64_t rotations = 0;    ///< times a new file took the place of the one that was followed
   std::int64_t truncations = 0;  ///< times that file shrank and was read from its beginning again
-  std::string last_problem;      ///< the last thing that went wrong; empty if nothing did
+  std::string last_problem;      ///< the last problem; empty if there was none
 };
 
 /// Where the lines of a log come from while the robot drives: standard input, a growing file, a
@@ -39,8 +39,8 @@ class LineSource {
   /// Any thread may call it.
   virtual SourceCounters counters() const { return {}; }
 
-  /// What has gone wrong since the last call, a line each, for the user. A problem that lasts, or
-  /// comes again before the source has worked, is told once. Any thread may call it.
+  /// Messages for the user about problems since the last call. A problem that lasts, or comes again
+  /// before the source has worked, is reported once. Any thread may call it.
   virtual std::vector<std::string> TakeNotices() { return {}; }
 };
 

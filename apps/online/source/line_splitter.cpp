@@ -24,7 +24,7 @@ bool LineSplitter::Finish(ReceivedLine* line) {
 }
 
 void LineSplitter::Take(std::string_view bytes) {
-  // One more than the longest line: that may be a CR.
+  // One byte more than the longest line is allowed, because it may be a CR.
   if (begun_.size() + bytes.size() > max_line_length_ + 1) skipping_ = true;
   if (skipping_) {
     begun_ = {};

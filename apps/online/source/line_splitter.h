@@ -20,8 +20,8 @@ class LineSplitter {
   /// that. Sets all of `line` but its arrival.
   bool Next(std::string_view* bytes, ReceivedLine* line);
 
-  /// At the end of the stream: gives what is left of it, as a line that is not terminated. False if
-  /// nothing is left. The next bytes begin a new stream.
+  /// Call at the end of the stream: gives the rest of it, as a line that is not terminated. False
+  /// if nothing is left. The next bytes begin a new stream.
   bool Finish(ReceivedLine* line);
 
  private:

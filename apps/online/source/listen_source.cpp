@@ -25,7 +25,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-/// The first of the host's addresses that can be had.
+/// Listens at the first of the host's addresses that is free.
 tcp::acceptor Listen(asio::io_context* io, const HostPort& address) {
   error_code error;
   const auto endpoints =
@@ -43,13 +43,13 @@ tcp::acceptor Listen(asio::io_context* io, const HostPort& address) {
   throw Error(ErrorCode::kInput, ToString(address) + ": cannot listen: " + error.message());
 }
 
-/// Whether the other end will send nothing more; there may still be something to read.
+/// Whether the other end has closed its side. There may still be bytes to read.
 bool IsLeaving(tcp::socket* socket) {
   pollfd state = {socket->native_handle(), POLLRDHUP, 0};
   return poll(&state, 1, 0) > 0;
 }
 
-/// Whether there is nothing more to read either.
+/// Whether the other end has closed its side and all bytes are read.
 bool HasLeft(tcp::socket* socket) {
   char byte = 0;
   const ssize_t count = recv(socket->native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
@@ -91,8 +91,8 @@ class ListenSource::Server {
   asio::steady_timer pause_{io_};  // before the next attempt to accept
 
   LineInlet* inlet_ = nullptr;         // while running
-  std::optional<tcp::socket> sender_;  // the one that is listened to
-  std::optional<tcp::socket> next_;    // the one that comes after it
+  std::optional<tcp::socket> sender_;  // the sender that is read from
+  std::optional<tcp::socket> next_;    // the sender after it
   int number_ = 0;                     // of the sender, from 1
   bool sent_something_ = false;
   SenderCheck check_;            // of the sender
@@ -120,14 +120,15 @@ void ListenSource::Server::Accept() {
       return;
     }
     counters_.Note("cannot accept: " + error.message());
-    // The process may be out of descriptors. Without a pause, the attempts would never stop.
+    // The process may have no descriptors left. The pause keeps the attempts from using all
+    // processor time.
     pause_.expires_after(std::chrono::milliseconds(100));
     pause_.async_wait([this](const error_code&) { Accept(); });
   });
 }
 
 void ListenSource::Server::Place(tcp::socket newcomer) {
-  if (sender_ && IsSilent()) Read();  // it may have broken its silence just now
+  if (sender_ && IsSilent()) Read();  // it may have sent something just now
   if (!sender_) {
     Begin(std::move(newcomer));
   } else if (IsLeaving(&*sender_) && (!next_ || HasLeft(&*next_))) {
@@ -182,7 +183,7 @@ void ListenSource::Server::TakeBytes(std::string_view bytes) {
     PassOn();
     return;
   }
-  if (passed.empty()) return;  // it cannot be told yet whether this is a log
+  if (passed.empty()) return;  // it is not known yet whether this is a log
   if (!std::exchange(sent_something_, true)) counters_.Recover();
   if (!inlet_->Add(passed)) io_.stop();
   if (inlet_->completed_line()) last_line_ = Clock::now();
@@ -196,10 +197,10 @@ void ListenSource::Server::EndOfSender() {
   }
 }
 
-/// Gives out what the sender sent last, also without a line end. False once the queue is closed.
+/// Passes on the sender's last line, also without a line end. False if the queue is closed.
 bool ListenSource::Server::FinishLines() { return inlet_->Add(check_.Rest()) && inlet_->Finish(); }
 
-/// From the sender to the next one, if there is one.
+/// Changes to the next sender, if there is one.
 void ListenSource::Server::PassOn() {
   sender_.reset();
   if (!FinishLines()) io_.stop();

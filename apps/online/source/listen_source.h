@@ -12,18 +12,18 @@ namespace loopgrid {
 struct ListenOptions {
   HostPort address;              ///< port 0: any that is free
   bool end_with_sender = false;  ///< the stream ends when a sender that sent something has left
-  double silence = 10.0;         ///< seconds without a line before a sender may lose its place
+  double silence = 10.0;         ///< seconds without a line before another sender may replace it
 };
 
-/// Lines that arrive over TCP, from one sender at a time. Others are turned away at once (their
-/// connection is closed), with two exceptions. One that comes after the sender has closed its side,
-/// while not all was read yet, is the next sender. And a sender that completes no line for a while
-/// loses its place to the next one that connects, for it may be dead. A sender whose first bytes
-/// are no log (see SenderCheck) is turned away as well. The last line of each sender is given out
-/// even if it has no end.
+/// Lines that arrive over TCP, from one sender at a time. The connections of others are closed at
+/// once, with two exceptions. If the sender has closed its side and not all of its bytes are read
+/// yet, the one that connects is the next sender. If the sender has completed no line for some
+/// time, it may be dead, and the one that connects replaces it. A sender whose first bytes are no
+/// log (see SenderCheck) is refused. The last line of each sender is passed on even if it has no
+/// end.
 class ListenSource : public LineSource {
  public:
-  /// Listens from now on. Throws Error (kInput) if the address cannot be had.
+  /// Begins to listen. Throws Error (kInput) if that is not possible at this address.
   explicit ListenSource(const ListenOptions& options);
   ~ListenSource() override;
 
@@ -34,7 +34,7 @@ class ListenSource : public LineSource {
   SourceCounters counters() const override;
   std::vector<std::string> TakeNotices() override;
 
-  /// The real one.
+  /// The real port.
   int port() const;
 
  private:

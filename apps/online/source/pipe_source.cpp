@@ -54,7 +54,7 @@ void PipeSource::Run(LineQueue* queue) {
   inlet.Finish();
 }
 
-/// False once Stop() was called.
+/// False if Stop() was called.
 bool PipeSource::WaitForBytes() const {
   std::array<pollfd, 2> waiting = {pollfd{descriptor_, POLLIN, 0},
                                    pollfd{wake_up_.descriptor(), POLLIN, 0}};

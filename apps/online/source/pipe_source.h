@@ -7,8 +7,8 @@
 
 namespace loopgrid {
 
-/// Lines from a descriptor: standard input, a pipe, a terminal. Each is passed on as soon as it is
-/// there. The stream ends when all writers have closed it.
+/// Lines from a descriptor: standard input, a pipe, a terminal. Each line is passed on as soon as
+/// it is complete. The stream ends when all writers have closed it.
 class PipeSource : public LineSource {
  public:
   /// Does not close `descriptor`. Throws Error (kInput) if it cannot be read from.

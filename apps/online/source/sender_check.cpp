@@ -9,14 +9,14 @@
 namespace loopgrid {
 namespace {
 
-// A first line whose first two words are longer than this together is no line of a log.
+// If the first two words are longer than this, the bytes are not from a log.
 constexpr std::size_t kLongestStart = 8192;
 
 constexpr std::string_view kNoProblem = "";
 constexpr std::string_view kHttp = "it speaks HTTP, as web pages do";
 constexpr std::string_view kNoLog = "what it sends does not begin as a log does";
 
-/// First bytes of a connection that tell what it is.
+/// First bytes of a connection that is not a log.
 struct Magic {
   std::string_view bytes;
   std::string_view problem;
@@ -27,7 +27,8 @@ constexpr std::array<Magic, 2> kMagics = {{
     {"\x16\x03", "it speaks TLS, as web pages do"},
 }};
 
-/// The problem with a connection that begins with these bytes; nothing if it cannot be told yet.
+/// The problem with a connection that begins with `start`; nothing if more bytes are needed to
+/// decide.
 std::optional<std::string_view> JudgeMagic(std::string_view start, const Magic& magic) {
   if (start.starts_with(magic.bytes)) return magic.problem;
   if (magic.bytes.starts_with(start)) return std::nullopt;

@@ -5,17 +5,18 @@
 
 namespace loopgrid {
 
-/// Looks at the first bytes of a connection for what is certainly no log: HTTP, gzip data, TLS. Any
-/// web page can make the browser of somebody who reads it send HTTP to an address on this machine,
-/// with lines of the page's choice in it. Nothing is passed on until the first bytes are judged.
+/// Refuses connections that begin with HTTP, gzip data or TLS, which cannot be a log. Any web page
+/// can make a browser on this machine send HTTP to an address on this machine, with any lines in
+/// it. No bytes are passed on before the first ones are checked.
 class SenderCheck {
  public:
-  /// Takes the next bytes of the connection. Returns those that may be passed on: none while it
-  /// cannot be told yet, then also the ones that were held back, none if the sender is refused.
-  /// They are valid until the next call.
+  /// Takes the next bytes of the connection. Returns the bytes that may be passed on. While more
+  /// bytes are needed to decide, these are none, and the bytes are held back. If the sender is
+  /// refused, none. They are valid until the next call.
   std::string_view Pass(std::string_view bytes);
 
-  /// The connection has ended: the bytes that are still held back, which are harmless.
+  /// Call at the end of the connection: returns the bytes that are still held back. They did not
+  /// show a problem.
   std::string_view Rest();
 
   /// Whether bytes are held back.
@@ -25,7 +26,7 @@ class SenderCheck {
   std::string_view problem() const { return problem_; }
 
  private:
-  std::string held_;  // while it cannot be told yet
+  std::string held_;  // bytes held back until the check is decided
   bool judged_ = false;
   std::string_view problem_;
 };

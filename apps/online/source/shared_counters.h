@@ -12,7 +12,7 @@
 
 namespace loopgrid {
 
-/// What a source's thread counts and reports, for other threads to read.
+/// Counters and messages of a source's thread, which other threads may read.
 class SharedCounters {
  public:
   void Count(std::int64_t SourceCounters::*counter) {
@@ -20,8 +20,8 @@ class SharedCounters {
     ++(counters_.*counter);
   }
 
-  /// Something went wrong. It becomes a notice for the user, unless the same problem was noted
-  /// before and the source has not recovered since.
+  /// Notes a problem for the user, unless the same one was noted before and the source has not
+  /// worked since.
   void Note(const std::string& problem) {
     const std::lock_guard lock(mutex_);
     counters_.last_problem = problem;
@@ -30,7 +30,7 @@ class SharedCounters {
     }
   }
 
-  /// The source works: when a problem comes back, the user is told again.
+  /// Call when the source works: the same problems may then be noted again.
   void Recover() {
     const std::lock_guard lock(mutex_);
     noted_.clear();

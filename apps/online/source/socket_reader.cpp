@@ -13,9 +13,9 @@ void KeepAlive(int socket) {
   const auto set = [socket](int level, int option, int value) {
     setsockopt(socket, level, option, &value, sizeof value);
   };
-  set(IPPROTO_TCP, TCP_KEEPIDLE, 10);  // seconds of silence before it is asked
-  set(IPPROTO_TCP, TCP_KEEPINTVL, 5);  // seconds until it is asked again
-  set(IPPROTO_TCP, TCP_KEEPCNT, 3);    // unanswered questions
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 10);  // seconds without data before the first probe
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 5);  // seconds between probes
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);    // unanswered probes before the connection is closed
   set(SOL_SOCKET, SO_KEEPALIVE, 1);
 }
 

@@ -6,11 +6,11 @@
 
 namespace loopgrid {
 
-/// Looks at the beginning of a stream for what cannot be a log of lines. The stream may arrive in
-/// pieces of any size.
+/// Checks whether the beginning of a stream can be a log of lines. The stream may arrive in pieces
+/// of any size.
 class StartCheck {
  public:
-  /// `name` is the stream's, for the message.
+  /// `name` is the name of the stream for messages.
   explicit StartCheck(std::string name) : name_(std::move(name)) {}
 
   /// Takes the next bytes. Throws Error (kInput) if the stream turns out to be gzipped or binary.

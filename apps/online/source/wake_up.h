@@ -4,8 +4,8 @@
 
 namespace loopgrid {
 
-/// A descriptor that becomes readable for good once Signal() is called. A thread that waits in
-/// poll() waits for it too, so that another thread can end the waiting.
+/// A descriptor that becomes readable, and stays so, when Signal() is called. A thread that waits
+/// in poll() includes it, so that another thread can end the wait.
 class WakeUp {
  public:
   /// Throws std::system_error if the system has no descriptor left.

@@ -1,4 +1,4 @@
-// What part of the map is on the screen: CSS pixels from metres. x to the right, y upwards.
+// Which part of the map is on the screen: converts metres to CSS pixels. x to the right, y upwards.
 
 const MIN_SCALE = 0.5;   // CSS pixels a metre
 const MAX_SCALE = 400;
@@ -12,7 +12,7 @@ class Camera {
     this.height = 1;
     this.insets = {left: 0, top: 0, right: 0, bottom: 0};  // covered by panels
     this.mode = 'fit';   // 'fit': all of the map, 'follow': the robot, 'free'
-    this.goal = null;    // {x, y, scale} that it glides to
+    this.goal = null;    // {x, y, scale} that it moves to smoothly
     this.calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   }
 
@@ -45,7 +45,7 @@ class Camera {
     this.y += dy / this.scale;
   }
 
-  /** Zooms about a point of the screen, or about the middle; following goes on. */
+  /** Zooms around a point of the screen, or around the middle; the robot is still followed. */
   zoom(factor, point = null) {
     const scale = Math.min(MAX_SCALE, Math.max(MIN_SCALE, this.scale * factor));
     if (this.mode === 'fit' || (point && this.mode !== 'follow')) this.mode = 'free';
@@ -74,7 +74,7 @@ class Camera {
             scale: Math.min(60, Math.max(MIN_SCALE, scale))};
   }
 
-  /** Moves on by `seconds`. True if it did move. */
+  /** Continues its motion by `seconds`. True if it moved. */
   step(seconds, robot, box) {
     if (this.mode === 'fit' && box) this.goal = this.fitGoal(box);
     if (this.mode === 'follow' && robot) this.goal = {x: robot.x, y: robot.y, scale: this.scale};

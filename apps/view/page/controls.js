@@ -4,7 +4,7 @@ const KEY_STEP = 80;       // CSS pixels an arrow key moves the map
 const KEY_ZOOM = 1.25;
 const KEYS_SETTING = 'loopgrid.single-keys';
 
-// The browser may refuse to remember anything.
+// The browser may not allow to store anything.
 function remembered(name) {
   try { return localStorage.getItem(name); } catch { return null; }
 }
@@ -56,7 +56,7 @@ class Controls {
     }, {passive: false});
   }
 
-  // One finger moves the map; two also stretch it.
+  // One finger moves the map; two fingers also zoom it.
   drag(event) {
     const {fingers, camera} = this;
     const before = fingers.get(event.pointerId);
@@ -76,7 +76,7 @@ class Controls {
 
   pressKey(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || byId('help-dialog').open) return;
-    const isCharacter = event.key.length === 1;   // others have names: 'ArrowLeft'
+    const isCharacter = event.key.length === 1;   // other keys have names: 'ArrowLeft'
     if (isCharacter && !this.singleKeys.checked) return;
     const onControl = event.target.closest?.('button, a, #closures');
     if (onControl && [' ', 'Enter', 'ArrowUp', 'ArrowDown'].includes(event.key)) return;

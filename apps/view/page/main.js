@@ -1,5 +1,5 @@
-// Puts the parts together and keeps the picture up to date: at the rate of the display while
-// something changes, and not at all while nothing does.
+// Connects the parts and redraws the picture: at the rate of the display while something changes,
+// and not at all otherwise.
 
 const canvas = byId('view');
 const world = new World();
@@ -10,19 +10,19 @@ let paused = null;        // the world as it was when the picture was paused
 let needsDrawing = true;
 let frameIsRequested = false;
 
-// For tests, and for looking at in the console of the browser.
+// For tests, and for the console of the browser.
 window.loopgrid = {
   fps: 0,                 // frames of the last second
   frames: 0,              // so far
   drawn: 0,               // frames that changed something
   firstPicture: null,     // milliseconds from the start of loading to the first piece of map
   get world() { return paused ?? world; },
-  live: world,            // as the server tells it, also while the picture is paused
+  live: world,            // the latest state, also while the picture is paused
   get paused() { return Boolean(paused); },
   camera, tiles,
 };
 
-/** Asks for a frame. Whatever may change the picture calls it. */
+/** Asks for a frame. Call it after every change that may change the picture. */
 function wake() {
   if (frameIsRequested) return;
   frameIsRequested = true;
@@ -121,7 +121,7 @@ function showState() {
   panels.setState(world.ended ? 'ended' : world.pose?.localized === false ? 'lost' : 'live');
 }
 
-// The server has ended: nothing is asked of it any more.
+// The server has ended: send no more requests.
 function leave() {
   tiles.offline = true;
   link.close();
@@ -149,13 +149,13 @@ const link = new Link({
   },
 });
 
-const seen = {world: null, changes: 0, tiles: 0};  // what the picture shows
+const seen = {world: null, changes: 0, tiles: 0};  // the state that the picture shows
 const second = {start: performance.now(), frames: 0};
 let last = performance.now();
 
 function countFrame(now) {
   ++window.loopgrid.frames;
-  if (now - last > 500) Object.assign(second, {start: now, frames: 0});  // it has rested
+  if (now - last > 500) Object.assign(second, {start: now, frames: 0});  // nothing was drawn
   ++second.frames;
   if (now - second.start < 1000) return;
   window.loopgrid.fps = second.frames * 1000 / (now - second.start);

@@ -1,4 +1,4 @@
-// The words and figures beside the map.
+// The panels beside the map: state, figures, list of closures.
 
 const STATES = {
   connecting: 'Connecting',
@@ -28,7 +28,7 @@ function milliseconds(value) {
 }
 
 class Panels {
-  /** `show(closure)`: the user wants to see it on the map. */
+  /** `show(closure)` is called when the user wants to see the closure on the map. */
   constructor(show) {
     this.show = show;
     this.drawn = {at: -Infinity, world: null, changes: -1};
@@ -43,7 +43,7 @@ class Panels {
     document.title = state === 'live' ? 'loopgrid' : `${STATES[state]} – loopgrid`;
   }
 
-  /** Returns after how many milliseconds it wants to be called again; 0 if it shows everything. */
+  /** Returns the milliseconds after which it has to be called again; 0 if it shows everything. */
   update(world, now) {
     const {drawn} = this;
     if (drawn.world === world && drawn.changes === world.changes) return 0;

@@ -1,14 +1,14 @@
 // Draws the world on the canvas.
 
-// The squared distance from the mean, in sigmas, of a normal distribution in two dimensions is above
-// r^2 with the probability exp(-r^2 / 2).
+// In two dimensions a point of a normal distribution is farther than r sigmas from the mean with
+// the probability exp(-r^2 / 2).
 const SIGMAS_OF_99 = Math.sqrt(-2 * Math.log(0.01));
 
 /** The colours of the style sheet, for the canvas. */
 function readPalette() {
   const style = getComputedStyle(document.documentElement);
   const color = (name) => style.getPropertyValue(`--${name}`).trim();
-  const packed = (name) => {  // as pixels have it: 0xAABBGGRR
+  const packed = (name) => {  // as stored in pixels: 0xAABBGGRR
     const rgb = parseInt(color(name).slice(1, 7), 16);
     return (0xff000000 | (rgb & 255) << 16 | rgb & 0xff00 | rgb >> 16) >>> 0;
   };
@@ -26,8 +26,8 @@ class Scene {
     this.tiles = tiles;
     this.palette = readPalette();
     this.showsEllipses = false;
-    this.robot = null;      // where it is drawn: it moves smoothly to the newest pose
-    this.paths = null;      // of the graph, and what they were made of
+    this.robot = null;      // the pose where it is drawn; it moves smoothly to the newest pose
+    this.paths = null;      // of the graph, and the state that they were made from
   }
 
   resize() {
@@ -39,7 +39,7 @@ class Scene {
     this.camera.height = clientHeight;
   }
 
-  /** The robot glides on. True if it moved. */
+  /** Moves the robot towards its newest pose. True if it moved. */
   moveRobot(pose, seconds) {
     if (!pose) return Boolean(this.robot && !(this.robot = null));
     const before = this.robot;
@@ -58,7 +58,7 @@ class Scene {
         Math.abs(theta - before.theta) > 1e-3;
   }
 
-  /** Returns whether there is more to come: `tiles` that are being fetched, `motion`. */
+  /** Returns why another frame is needed: `tiles` are being fetched, or there is `motion`. */
   draw(world, now) {
     const {context, canvas, palette} = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -74,7 +74,7 @@ class Scene {
     return {tiles: waiting, motion: flashing};
   }
 
-  // From here on the canvas takes metres.
+  // From here on coordinates on the canvas are metres.
   useMetres() {
     const [x, y] = this.camera.toScreen(0, 0);
     const scale = this.camera.scale * this.ratio;
@@ -147,8 +147,8 @@ class Scene {
     context.fill();
   }
 
-  // The path of the ellipse, metres, that holds a position with 99 %, from the covariance of its x
-  // and y. False if there is none, or if it is smaller than a pixel.
+  // Makes the path of the 99 % ellipse of a position, metres, from the covariance of x and y. False
+  // if there is none, or if it is smaller than a pixel.
   ellipse(x, y, xx, xy, yy) {
     const mean = (xx + yy) / 2;
     const spread = Math.hypot((xx - yy) / 2, xy);
@@ -178,8 +178,8 @@ class Scene {
     context.globalAlpha = 1;
   }
 
-  // A closure that has just been decided: its edge lights up. If it was accepted, a ring shrinks
-  // around the place that the robot has recognised.
+  // Highlights the edge of a closure that has just been decided. If it was accepted, also draws a
+  // ring that shrinks around the place that the robot has recognised.
   drawFlashes(world, now) {
     const {context, palette, camera} = this;
     for (const id of [...world.flashes.keys()]) {

@@ -10,10 +10,10 @@ const GREY_WALL = 0;
 const GREY_FREE = 254;
 
 class Tiles {
-  /** `wake(milliseconds)`: draw again after so long, as there will be something new to draw. */
+  /** `wake(milliseconds)` asks to draw again after this time. */
   constructor(wake) {
     this.wake = wake;
-    this.changes = 0;         // rises with every change
+    this.changes = 0;         // increases with every change
     this.frozen = false;      // what is on the screen stays as it is
     this.offline = false;     // nothing is fetched
     this.reset('', 0.05);
@@ -39,12 +39,12 @@ class Tiles {
     ++this.changes;
   }
 
-  /** Colours have changed: all pictures are made anew. */
+  /** Colours have changed: all pictures are made again. */
   repaint() {
     for (const tile of this.tiles.values()) tile.shown = tile.fetched = tile.failed = 0;
   }
 
-  /** The server is there again: what failed may be asked for once more. */
+  /** The server answers again: tiles that failed may be fetched again. */
   retry() {
     for (const tile of this.tiles.values()) tile.failed = 0;
   }
@@ -53,13 +53,13 @@ class Tiles {
     return TILE_SIDE * this.resolution * 2 ** level;
   }
 
-  /** The level of which a pixel is nearest to one on the screen, but not larger. */
+  /** The level whose pixels are about as large as those of the screen, or smaller. */
   levelFor(pixelsPerMetre) {
     const cells = 1 / (pixelsPerMetre * this.resolution);
     return Math.min(TILE_LEVELS - 1, Math.max(0, Math.floor(Math.log2(cells) + 0.25)));
   }
 
-  /** The part of the map where anything is known, as far as was seen here; null if nothing. */
+  /** The known part of the map, as far as its tiles were loaded; null if nothing is known. */
   bounds(level) {
     let box = null;
     for (const tile of this.tiles.values()) {
@@ -74,7 +74,7 @@ class Tiles {
     return box;
   }
 
-  /** Draws what `camera` sees and fetches what is missing. True if some of it is still to come. */
+  /** Draws what `camera` sees and fetches missing tiles. True if some are not loaded yet. */
   draw(context, camera, ratio, palette, now) {
     const level = this.levelFor(camera.scale * ratio);
     const side = this.side(level);
@@ -97,7 +97,7 @@ class Tiles {
     return waiting;
   }
 
-  // A tile that is not here yet is cut out of a coarser one, or put together from finer ones.
+  // While a tile is not loaded, a part of a coarser one is drawn, or finer ones.
   drawTile(context, camera, ratio, tile) {
     let [picture, sx, sy, size] = [tile.picture, 0, 0, TILE_SIDE];
     for (let up = 1; !picture && tile.level + up < TILE_LEVELS; ++up) {
@@ -129,7 +129,7 @@ class Tiles {
     }
   }
 
-  // True if the tile is on its way, or waits for its turn.
+  // True if the tile is being fetched, or waits to be fetched.
   fetch(tile, palette, now) {
     if (this.offline || tile.failed >= tile.version) return false;
     if (tile.fetching || this.fetches >= MAX_FETCHES) return true;
@@ -145,7 +145,7 @@ class Tiles {
     tile.fetching = true;
     tile.fetched = now;
     ++this.fetches;
-    tile.failed = version;    // until it is here
+    tile.failed = version;    // until it is loaded
     try {
       const reply = await fetch(`/tiles/${tile.key}.png?v=${run}.${version}`);
       if (!reply.ok) return;
@@ -161,7 +161,7 @@ class Tiles {
     } finally {
       tile.fetching = false;
       if (tiles === this.tiles) --this.fetches;
-      this.wake(0);           // another tile may be waiting for its turn
+      this.wake(0);           // another tile may be waiting
     }
   }
 

@@ -11,7 +11,7 @@ const REFUSED = 200;    // closures remembered, the newest
 class World {
   constructor() {
     this.run = '';
-    this.changes = 0;       // rises with every change
+    this.changes = 0;       // increases with every change
     this.graphChanges = 0;  // ... of nodes and closures
     this.clear();
   }
@@ -21,20 +21,20 @@ class World {
     this.pose = null;     // the newest, as in the events
     this.nodes = [];      // [x, y, theta, xx, xy, yy, tt, linked]
     this.tail = [];       // positions of the newest scans since the last node
-    this.tailJoined = true;  // no position between the last node and them was forgotten
+    this.tailJoined = true;  // no position since the last node was dropped
     this.closures = new Map();  // by id
     this.flashes = new Map();   // closure id -> time of its end
     this.counters = {scans: 0, unmatched: 0, nodes: 0, accepted: 0, pending: 0, refused: 0,
                      travelled: 0};
     this.latencies = [];
-    this.clock = null;    // where log time and real time were compared
+    this.clock = null;    // the log time and the real time when they were last compared
     this.speed = 0;       // log seconds a second
     this.ended = false;
     ++this.changes;
     ++this.graphChanges;
   }
 
-  /** Everything anew. True if it is another run of the program. */
+  /** Replaces everything. True if it is another run of the program. */
   takeState(state) {
     const isOther = state.run !== this.run;
     this.clear();
@@ -118,7 +118,7 @@ class World {
     return Math.max(0, (end - now) / FLASH);
   }
 
-  /** A copy that stays as it is. */
+  /** A copy that does not change. */
   frozen() {
     const copy = Object.assign(Object.create(World.prototype), this);
     copy.nodes = [...this.nodes];
@@ -130,7 +130,7 @@ class World {
   }
 }
 
-/** 'accepted', 'pending' or 'refused': what a closure's outcome comes to. */
+/** The kind of a closure's outcome: 'accepted', 'pending' or 'refused'. */
 function verdict(closure) {
   return ['accepted', 'pending'].includes(closure.outcome) ? closure.outcome : 'refused';
 }

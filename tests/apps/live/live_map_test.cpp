@@ -81,7 +81,7 @@ TEST(LiveMap, GivesOnlyChangedTilesNewVersions) {
   live.WaitUntilCurrent();
   const std::uint64_t before = live.tiles().version();
   EXPECT_GT(before, 0u);
-  live.Add(trip.Update(0));  // nothing that was not known
+  live.Add(trip.Update(0));  // nothing new
   live.WaitUntilCurrent();
   EXPECT_EQ(live.tiles().version(), before);
 }

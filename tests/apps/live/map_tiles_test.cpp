@@ -112,7 +112,7 @@ TEST(MapTiles, EncodeWhatChangedAnew) {
   EXPECT_GT(after, before);
 }
 
-// Oracle: every coarse pixel from all of its cells.
+// The oracle computes every coarse pixel from all of its cells.
 TEST(MapTiles, ShowWallsAndFreeSpaceOnEveryLevel) {
   OccupancyGrid grid = EmptyGrid();
   test_support::PortableRandom random(3);
@@ -170,7 +170,7 @@ TEST(MapTiles, GiveTheWholePictureAsDrawMapDoes) {
   EXPECT_EQ(MapYaml(picture.box, 1.0, "map.pgm"), MapYaml(grid, "map.pgm"));
 }
 
-// Oracle: every pixel of the picture from all of its cells.
+// The oracle computes every pixel of the picture from all of its cells.
 TEST(MapTiles, DrawAPictureCoarserThatWouldBeTooLarge) {
   OccupancyGrid grid = EmptyGrid();
   AddWall(-300, 7, &grid);

@@ -31,7 +31,7 @@ RefreshContent ContentOf(const RoundTrip& trip) {
   return content;
 }
 
-/// A scan whose only wall is so far away, metres.
+/// A scan whose only wall is `metres` away.
 OnlineUpdate FarWall(float metres) {
   auto points = std::make_shared<PointScan>();
   points->hits = {{metres, 0.0F}};

@@ -1,4 +1,4 @@
-// loopgrid online as its user meets it: the same bytes as run, whatever way the lines come.
+// The command `loopgrid online`: it makes the same bytes as `run`, from every source of lines.
 
 #include "apps/online/online_command.h"
 
@@ -46,7 +46,7 @@ using ::testing::Not;
 
 constexpr int kScans = 30;
 
-/// Each test has a small log and what `run` makes of it.
+/// Each test has a small log, and the files that `run` makes of it.
 class OnlineCommandTest : public ::testing::Test {
  protected:
   OnlineCommandTest() {
@@ -57,7 +57,7 @@ class OnlineCommandTest : public ::testing::Test {
 
   std::string File(const std::string& name) const { return folder_.File(name); }
 
-  /// Where a program listens that notes its events in a file.
+  /// The port of a program that writes its events to a file.
   int PortOf(const std::string& events) const {
     const auto start = WaitForEvent(File(events), "start");
     const std::string source = start.value_or(json{{"source", ":0"}})["source"];
@@ -94,7 +94,7 @@ TEST_F(OnlineCommandTest, FileThatIsFollowedGivesTheBytesOfRun) {
     begin += length;
   }
   WaitForEvent(File("events"), "pose", "scan", kScans - 1);
-  // It is a warning about its line, and the one after that is never finished.
+  // This line causes a warning, and the one after it is never finished.
   WaitForEvent(File("events"), "warning");
   program.Send(SIGTERM);
   ExpectDone(program.Wait(), "live");
@@ -149,7 +149,7 @@ TEST_F(OnlineCommandTest, SignalThatComesTwiceIsOneAndLeavesAllFiles) {
                    File("events"), "--quiet"});
   WaitForEvent(File("events"), "pose", "scan", kScans - 1);
   WaitForEvent(File("events"), "warning");
-  // As timeout(1) does, to the process and to its group; long within a second.
+  // As timeout(1) does: to the process and to its group, well within a second.
   const auto start = std::chrono::steady_clock::now();
   do {
     program.Send(SIGTERM);
@@ -160,13 +160,13 @@ TEST_F(OnlineCommandTest, SignalThatComesTwiceIsOneAndLeavesAllFiles) {
 
 TEST_F(OnlineCommandTest, SecondSignalEndsAtOnceAndLosesNothing) {
   folder_.Write("long.clf", SmallLog(400));
-  // Nobody reads the events, so that it can go neither on nor end.
+  // The events are not read, so the program can neither continue nor end.
   const int log = open(File("long.clf").c_str(), O_RDONLY | O_CLOEXEC);
   Program program({"online", "--out", File("live"), "--events", "-", "--quiet"},
                   [log] { dup2(log, STDIN_FILENO); });
   close(log);
   const std::string journal = File("live/journal.clf");
-  // 64 KiB of events are what the pipe takes.
+  // The pipe takes 64 KiB of events.
   test_support::WaitUntil([&] {
     return std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 200'000;
   });
@@ -189,7 +189,7 @@ TEST_F(OnlineCommandTest, FilesAreThereWhileMappingGoesOn) {
   for (const char* name : {"map.png", "map.pgm", "map.yaml", "graph.g2o"}) {
     EXPECT_THAT(ReadFile(File(std::string("live/") + name)), Not(IsEmpty())) << name;
   }
-  // What comes while mapping is what is there at the end, where no loop was closed.
+  // If no loop was closed, the files while mapping are the same as at the end.
   const std::string map = ReadFile(File("live/map.pgm"));
   EXPECT_FALSE(std::filesystem::exists(File("live/report.json")));
   program.Send(SIGTERM);

@@ -1,4 +1,4 @@
-// What loopgrid online does when it cannot do what it should: one clear line, and nothing lost.
+// Failures of `loopgrid online`: one clear line on standard error, and nothing is lost.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -142,7 +142,7 @@ TEST_F(OnlineErrorsTest, StrictStopsAtTheFirstMalformedLine) {
 TEST_F(OnlineErrorsTest, DiskThatFillsUpLosesNothing) {
   ASSERT_EQ(RunProgram({"run", File("room.clf"), "--out", File("run")}).status, 0);
   const std::uintmax_t journal = fs::file_size(File("room.clf"));
-  // It stops before the first line, within the lines, at a refresh, in the end.
+  // It stops before the first line, within the lines, at a refresh, or at the end.
   for (const std::uintmax_t limit :
        {std::uintmax_t{50}, journal / 2, journal - 1, journal, journal + journal / 10}) {
     SCOPED_TRACE(limit);

@@ -1,5 +1,5 @@
-// kill -9 at any moment, again and again: what comes out in the end is what would have come out
-// without it.
+// The program is killed many times, at random moments. At the end the files are the same as
+// without.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -38,8 +38,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kKillsPerTest = 52;
 
-/// A log with all that makes it hard to tell where a stream goes on: lines that repeat, lines that
-/// are malformed, a last line that is cut.
+/// A log with everything that makes it hard to find where a stream continues: repeated lines,
+/// malformed lines, and a last line that is cut.
 std::string AwkwardLog() {
   std::istringstream plain(SmallLog(40));
   std::string log;
@@ -100,14 +100,14 @@ class Kill : public ::testing::TestWithParam<std::uint32_t> {
     std::int64_t acknowledged = 0;
     for (bool resume = false;;
          resume = std::filesystem::exists(folder_.File(folder + "/session.json"))) {
-      // The sender begins at the first line, behind the last acknowledged one, or in between.
+      // The sender begins at the first line, after the last acknowledged one, or in between.
       const double share = random->Uniform(-0.5, 1.5);
       const auto line = static_cast<std::int64_t>(std::clamp(share, 0.0, 1.0) *
                                                   static_cast<double>(acknowledged));
       const std::size_t begin = EndOfLine(log_, line);
       Program program = Start(folder, begin, resume);
       if (random->Uniform() < 0.9) {
-        // Much of the time goes into the drawings at the end.
+        // The drawings at the end take much of the time.
         const double latest = random->Uniform() < 0.6 ? 0.4 : 1.0;
         std::this_thread::sleep_for(
             std::chrono::duration<double>(random->Uniform(0.0, latest * whole_time_)));
@@ -123,7 +123,7 @@ class Kill : public ::testing::TestWithParam<std::uint32_t> {
 
   TemporaryDirectory folder_;
   std::string log_;
-  double whole_time_ = 0.0;  // seconds, of a session that nobody disturbs
+  double whole_time_ = 0.0;  // seconds, of a session that is not killed
 };
 
 TEST_P(Kill, AtAnyMomentChangesNothingOnceResumed) {

@@ -1,4 +1,4 @@
-// What loopgrid online tells on standard error while it waits for lines.
+// Messages of `loopgrid online` on standard error while it waits for lines.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -27,7 +27,7 @@ inline ProgramResult RunOnline(std::vector<std::string> arguments, const std::st
   });
 }
 
-/// The events that a file holds so far, whole lines only.
+/// The events in a file so far, complete lines only.
 inline std::vector<nlohmann::json> EventsIn(const std::string& path) {
   std::vector<nlohmann::json> events;
   if (!std::filesystem::exists(path)) return events;

@@ -45,7 +45,8 @@ class Session {
         {.text = text, .terminated = terminated, .arrival = std::chrono::steady_clock::now()});
   }
 
-  /// Sends whole lines and, where the text has no line end at its end, a cut one.
+  /// Sends the lines of a text. If the text does not end with a line end, the last line is a cut
+  /// one.
   void SendAll(const std::string& text) {
     std::size_t begin = 0;
     for (std::size_t end = 0; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
@@ -140,7 +141,7 @@ TEST(OnlineSession, ResumedAtAnyByteItEndsAsIfNeverInterrupted) {
     const TemporaryDirectory folder;
     std::size_t cut = 0;
     for (int crash = 0; crash < 3; ++crash) {
-      // What reached the disk before the power went.
+      // The part of the file that was on the disk at a power cut.
       cut += random.Index(log.size() - cut + 1);
       folder.Write("journal.clf", log.substr(0, cut));
       const Session resumed(folder, true);

@@ -13,12 +13,12 @@
 
 namespace loopgrid::test_support {
 
-/// A line as tests write it down: cut ones with a `~` behind, too long ones as `(too long)`.
+/// A line as text: cut lines end in `~`, and lines that are too long are `(too long)`.
 inline std::string Shown(const ReceivedLine& line) {
   return (line.too_long ? "(too long)" : line.text) + (line.terminated ? "" : "~");
 }
 
-/// A source at work on a thread of its own, and its lines, popped by another one.
+/// Runs a source on a thread of its own. Another thread collects its lines.
 class RunningSource {
  public:
   explicit RunningSource(LineSource* source) : source_(source) {
@@ -27,7 +27,7 @@ class RunningSource {
   }
   ~RunningSource() { Stop(); }
 
-  /// Tells it to stop and waits until it has.
+  /// Stops the source and waits for its end.
   void Stop() {
     source_->Stop();
     WaitForEnd();
@@ -45,7 +45,7 @@ class RunningSource {
     return lines_;
   }
 
-  /// Waits for so many lines; all there are by then (or when patience is at its end).
+  /// Waits for `count` lines, for a limited time. Returns all lines so far.
   std::vector<std::string> WaitForLines(std::size_t count) const {
     WaitUntil([&] { return lines().size() >= count; });
     return lines();
@@ -56,7 +56,7 @@ class RunningSource {
     return static_cast<std::size_t>(std::count(all.begin(), all.end(), line));
   }
 
-  /// After the end: what Run() threw; empty if nothing.
+  /// After the end: the message of the error that Run() threw; empty if none.
   const std::string& problem() const { return problem_; }
 
  private:

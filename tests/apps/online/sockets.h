@@ -63,7 +63,7 @@ class Socket {
     return count > 0 ? static_cast<std::size_t>(count) : 0;
   }
 
-  /// Waits for bytes and takes them; none at the end, or if none come.
+  /// Waits for bytes and returns them; none at the end, or if none arrive in time.
   std::string Receive() const {
     std::array<char, 4096> bytes;
     pollfd waiting = {get(), POLLIN, 0};
@@ -72,7 +72,7 @@ class Socket {
     return std::string(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   }
 
-  /// Says that no more will be sent, but stays.
+  /// Closes this side only: sends no more, but can still receive.
   void CloseHalf() const { shutdown(get(), SHUT_WR); }
 
   /// Resets the connection instead of closing it.

@@ -5,8 +5,8 @@
 
 namespace loopgrid::test_support {
 
-/// Waits until a condition holds that other threads or processes bring about; false if it does not
-/// within a time that is far longer than it ever takes.
+/// Waits until other threads or processes make a condition true. False after a time that is much
+/// longer than it should take.
 template <typename Condition>
 bool WaitUntil(const Condition& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);

@@ -47,8 +47,8 @@ std::string PixelsOf(const std::string& name) {
          "})()";
 }
 
-/// A mapping run with its page in the browser. One browser for all tests: it takes its time to
-/// start.
+/// A mapping run with its page in the browser. All tests share one browser, because it starts
+/// slowly.
 class BrowserTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -89,7 +89,7 @@ class BrowserTest : public testing::Test {
 
   static Browser& browser() { return *browser_; }
 
-  // Starts anew, on the same port if there was one.
+  // Starts a new server, on the same port if there was one before.
   void Serve() {
     server_.reset();
     map_ = std::make_unique<LiveMap>();
@@ -134,7 +134,7 @@ class BrowserTest : public testing::Test {
     return browser().Run("return " + expression).get<double>();
   }
 
-  // The dialog has the keyboard until it is closed.
+  // The dialog takes all keys until it is closed.
   static bool LeavesHelp() {
     browser().Press({kEscape});
     return browser().WaitFor("!document.getElementById('help-dialog').open");
@@ -299,7 +299,7 @@ TEST_F(BrowserTest, AsksForNothingAfterTheEnd) {
   server_.reset();
   EXPECT_GT(Number(PixelsOf("free")), 10000);
   browser().TakeHosts();
-  browser().Press({"-", "-", "-", "-", "-", "-"});  // where other tiles would be fetched
+  browser().Press({"-", "-", "-", "-", "-", "-"});  // there it would need other tiles
   ASSERT_TRUE(ComesToRest());
   EXPECT_EQ(browser().TakeHosts(), std::set<std::string>());
   EXPECT_GT(Number(PixelsOf("free")), 100) << "the map is drawn from the tiles that are there";

@@ -29,7 +29,7 @@ using test_support::Wire;
 constexpr const char* kGet = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
 constexpr const char* kFollow = "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
-/// Says "hello" to everything, and events with whatever the test wants.
+/// Answers "hello" to every request, and sends the events that the test sets.
 class Greeter : public HttpContent {
  public:
   Reply Answer(const Request& request) override {
@@ -203,7 +203,7 @@ TEST_F(HttpServiceTest, DropsClientsThatTakeTooLongOverARequest) {
   Start(options);
   Wire silent(port());
   EXPECT_TRUE(silent.WaitForEnd());
-  // A byte now and then wins no time.
+  // Sending a byte now and then does not extend the time.
   Wire slow(port());
   EXPECT_TRUE(WaitUntil([&] { return !slow.Send("G"); }));
   Wire between(port(), kGet);  // and nothing after it
@@ -220,9 +220,9 @@ TEST_F(HttpServiceTest, DropsClientsThatDoNotTakeTheirReply) {
       WaitUntil([this] { return counters().requests == 1 && counters().connections == 0; }));
 }
 
-// Whether a client gets a large body whole that it takes steadily, but in more time than a client
-// may take nothing; `request` asks for it. False as well if this machine was busy with other things
-// for as long as that.
+// Whether a client gets a large body completely if it reads slowly but steadily, and so takes
+// longer than the write timeout; `request` asks for the body. Also false if this machine was too
+// busy for that long.
 bool GetsItSlowly(const HttpService& service, const char* request, std::size_t size) {
   constexpr auto kPause = std::chrono::milliseconds(10);
   constexpr auto kDuration = std::chrono::milliseconds(800);
@@ -300,7 +300,7 @@ TEST_F(HttpServiceTest, SkipsViewersAheadThatDoNotKeepUpAndNobodyElse) {
   ASSERT_TRUE(quick.WaitFor("snapshot"));
   ASSERT_TRUE(WaitUntil([this] { return counters().viewers == 2; }));
   std::size_t told = 0;
-  for (int i = 0; counters().skips == 0; ++i) {  // until the system's buffers are full, too
+  for (int i = 0; counters().skips == 0; ++i) {  // until the system's buffers are full as well
     ASSERT_LT(i, 2000) << "nothing was skipped in 100 MB";
     const std::string news(50'000, static_cast<char>('a' + i % 26));
     told += news.size() + 1;

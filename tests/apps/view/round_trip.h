@@ -11,7 +11,7 @@
 
 namespace loopgrid::test_support {
 
-/// What an online run through DistinctiveRoom() would report: every third scan is a node.
+/// The updates of an online run through DistinctiveRoom(), in which every third scan is a node.
 class RoundTrip {
  public:
   static constexpr int kScansANode = 3;
@@ -25,7 +25,7 @@ class RoundTrip {
 
   int scans() const { return static_cast<int>(poses_.size()); }
 
-  /// From now on node i is off by `drift`, i times.
+  /// Moves node i by i times `drift`.
   void MoveNodes(const SE2& drift) {
     NodeStates states;
     SE2 T_map_truth;

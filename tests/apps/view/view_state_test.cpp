@@ -21,7 +21,7 @@ struct Event {
   json data;
 };
 
-// Strict: what is no JSON throws.
+// Throws if the data are not JSON.
 std::vector<Event> ParseEvents(const std::string& text) {
   std::vector<Event> events;
   std::istringstream lines(text);
@@ -72,7 +72,7 @@ TEST(ViewState, StartsEmptyAndSaysNothingNew) {
   EXPECT_FALSE(snapshot["ended"]);
 }
 
-// A viewer that was there from the start knows what one knows that comes now.
+// A viewer from the start has the same state as a new one.
 TEST(ViewState, LeadsFromStateToStateByItsChanges) {
   RoundTrip trip(60);
   ViewState state("a", 0.05);
@@ -231,7 +231,7 @@ TEST(ViewState, BreaksThePathWhereTheRobotCannotHaveGone) {
 
 TEST(ViewState, CountsTheWholePathOfTheRobotNotOnlyItsNodes) {
   ViewState state("a", 0.05);
-  // A square with a side of 2 m, again and again: only its first corner is a node.
+  // Rounds of a square with a side of 2 m. Only its first corner is a node.
   const SE2 corners[] = {SE2(0, 0, 0), SE2(2, 0, 0), SE2(2, 2, 0), SE2(0, 2, 0)};
   for (int scan = 0; scan < 9; ++scan) {
     OnlineUpdate update;

@@ -12,7 +12,7 @@
 
 namespace loopgrid::test_support {
 
-/// An HTTP client that sends and shows plain bytes.
+/// An HTTP client that sends and receives plain bytes.
 class Wire {
  public:
   explicit Wire(int port) : socket_(Socket::ConnectTo(port)) {}
@@ -34,7 +34,7 @@ class Wire {
     return true;
   }
 
-  /// Reads until so many bytes have come; false if they do not.
+  /// Reads until `count` bytes have arrived; false if they do not.
   bool WaitForBytes(std::size_t count) {
     while (received_.size() < count) {
       if (!ReadMore()) return false;

@@ -33,7 +33,7 @@ ReceivedLine TooLong(bool terminated = true) {
   return {.terminated = terminated, .too_long = true};
 }
 
-/// What a decoder makes of lines.
+/// The observations that a decoder makes of lines.
 class Decoded {
  public:
   void Add(const ReceivedLine& line) {
@@ -104,7 +104,7 @@ TEST(Journal, LastLineWithoutEndIsCompletedByTheLineThatItBegins) {
   EXPECT_EQ(ReadFile(journal.path()), "# a\nODOM 1 23 4\nb\n");
 }
 
-/// Lines as no robot sends them.
+/// A line that a robot would not send.
 ReceivedLine AwkwardLine(PortableRandom* random, const std::vector<std::string>& good) {
   const std::vector<std::string> pieces = {
       "\r",       " ", "\t",           "FLASER 1 5 0 0 0 0 0 0 7 h 7",
@@ -122,7 +122,8 @@ ReceivedLine AwkwardLine(PortableRandom* random, const std::vector<std::string>&
   line.terminated = random->Uniform() < 0.8;
   line.too_long = random->Uniform() < 0.01;
   if (line.too_long) line.text.clear();
-  if (line.text.empty() && !line.too_long) line.terminated = true;  // else it is no line
+  if (line.text.empty() && !line.too_long)
+    line.terminated = true;  // otherwise it would not be a line
   return line;
 }
 
@@ -164,7 +165,7 @@ TEST(Journal, FirstLineNeverMakesItLookPackedOrBinary) {
   }
 }
 
-/// While it lives, files must not grow beyond a size.
+/// Limits the size of files while the object exists.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

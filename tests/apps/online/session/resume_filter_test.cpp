@@ -28,7 +28,7 @@ Lines operator+(Lines a, const Lines& b) {
   return a;
 }
 
-/// What the filter passes on.
+/// The lines that the filter passes on.
 Lines NewLines(const Lines& journal, const Lines& stream) {
   ResumeFilter filter;
   for (const std::string& line : journal) filter.AddJournalLine({.text = line});
@@ -54,7 +54,7 @@ std::size_t CommonPrefix(const Lines& a, std::size_t a_begin, const Lines& b, st
   return count;
 }
 
-/// The same by the words of the class's description, with all of the stream known beforehand.
+/// Computes the same from the description of the class, with the whole stream at once.
 class Oracle {
  public:
   Oracle(const Lines& journal, const Lines& stream) : journal_(journal), stream_(stream) {
@@ -142,7 +142,7 @@ TEST(ResumeFilter, EveryCutOfALogWithDistinctScansIsJoinedWithoutASeam) {
     EXPECT_EQ(journal + NewLines(journal, log), log) << end;
     for (std::size_t begin = 0; begin <= end; ++begin) {
       const Lines stream = Slice(log, begin, log.size());
-      // A sender knows of scans which were acknowledged, not of other lines.
+      // A sender knows which scans were acknowledged, but not which other lines.
       if (begin > 0 && !IsLaserText(log[begin - 1])) continue;
       EXPECT_EQ(journal + NewLines(journal, stream), log) << begin << " to " << end;
     }
@@ -197,7 +197,7 @@ TEST(ResumeFilter, DecidesAsDescribedWhateverTheLines) {
   for (int round = 0; round < 30'000; ++round) {
     const Lines journal = random_lines();
     Lines stream = random_lines();
-    // Mostly something that has to do with the journal.
+    // Most streams contain lines of the journal.
     if (random.Uniform() < 0.8) {
       const auto begin = random.Index(journal.size() + 1);
       stream = Slice(journal, begin, journal.size()) + stream;

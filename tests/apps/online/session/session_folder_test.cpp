@@ -127,7 +127,7 @@ TEST_F(SessionFolderTest, RemovesWhatAKilledSessionLeftUnfinished) {
 
 TEST_F(SessionFolderTest, ContinuedSessionBeginsWithTheLinesOfTheOther) {
   std::filesystem::create_directory(folder_.File("old"));
-  // The journal is preferred, once it is there.
+  // If the journal exists, it is preferred.
   for (const char* name : {"old/corrected.clf", "old/journal.clf"}) {
     SCOPED_TRACE(name);
     std::filesystem::remove_all(folder_.File("live"));

@@ -34,7 +34,7 @@ ConnectOptions To(int port) {
   return options;
 }
 
-/// A port where nobody listens, for the moment.
+/// A port that is free at the moment.
 int FreePort() { return Listener().port(); }
 
 TEST(ConnectSource, FetchesLines) {
@@ -126,7 +126,7 @@ TEST(ConnectSource, EndsWithTheFirstSenderThatSentSomethingIfTold) {
   options.end_with_sender = true;
   ConnectSource source(options);
   RunningSource running(&source);
-  robot.Accept();  // turns us away
+  robot.Accept();  // closes the connection at once
   robot.Accept().Send("one\ntwo");
   running.WaitForEnd();
   EXPECT_THAT(running.lines(), ElementsAre("one", "two~"));

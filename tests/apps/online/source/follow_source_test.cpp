@@ -74,7 +74,7 @@ TEST_F(FollowSourceTest, AfterARotationReadsTheOldFileToItsEndAndThenTheNewOne) 
   running.WaitForLines(1);
   std::ofstream old_one(path_, std::ios::app);
   fs::rename(path_, path_ + ".1");
-  Append("");  // an empty new file: its writer may still be busy with the old one
+  Append("");  // an empty new file: its writer may still be writing to the old one
   old_one << "old 2\nold 3" << std::flush;
   running.WaitForLines(2);
   Append("new 1\nnew");
@@ -132,7 +132,7 @@ TEST_F(FollowSourceTest, NoLineIsLostOrRepeatedHoweverItIsWrittenAndRotated) {
     Append(line.substr(0, cut));
     Append(line.substr(cut) + "\n");
     if (i % 30 == 29) {
-      // Two rotations at once would be one too many.
+      // Two rotations between two checks would not be noticed.
       ASSERT_TRUE(WaitUntil([&] { return source.counters().rotations == i / 30; }));
       fs::rename(path_, path_ + "." + std::to_string(i));
     }

@@ -33,7 +33,7 @@ std::vector<std::string> Split(const std::vector<std::string_view>& pieces,
   return lines;
 }
 
-/// What LineReader makes of a file of the same bytes: the oracle.
+/// The lines that LineReader reads from a file of the same bytes, as the oracle.
 std::vector<std::string> ReadLines(std::string_view content, std::size_t max_line_length) {
   const MemoryFile file(content);
   LineReader reader(InputFile(file.path()), max_line_length);

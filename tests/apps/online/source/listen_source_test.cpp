@@ -76,7 +76,7 @@ TEST(ListenSource, ASenderMayGoOnlyToComeBackAtOnce) {
   for (int i = 0; i < 50; ++i) {
     expected.push_back(std::to_string(i));
     ASSERT_TRUE(Socket::ConnectTo(source.port()).Send(expected.back() + "\n"));
-    // Only one may come while it is leaving.
+    // While it is leaving, only one other sender may connect.
     ASSERT_TRUE(WaitUntil([&] { return source.counters().connections > i; }));
   }
   EXPECT_EQ(running.WaitForLines(50), expected);
@@ -123,7 +123,7 @@ TEST(ListenSource, ASilentSenderKeepsItsPlaceUntilItsTimeIsUp) {
 
 TEST(ListenSource, TurnsAwayWhatWebPagesSendAndTellsItOnce) {
   ListenOptions options = OnLoopback();
-  options.end_with_sender = true;  // which a refused one does not count for
+  options.end_with_sender = true;  // a refused sender does not end the stream
   ListenSource source(options);
   RunningSource running(&source);
   for (int i = 0; i < 3; ++i) {
@@ -229,7 +229,7 @@ TEST(ListenSource, GarbageIsPassedOnAsLinesAndHarmsNobody) {
   Socket::ConnectTo(source.port()).Send(garbage);
   ASSERT_TRUE(WaitUntil(
       [&] { return source.counters().connections == 1 && running.lines().size() > 300; }));
-  // Turned away until all of the garbage is read.
+  // Others are refused until all of the garbage is read.
   ASSERT_TRUE(WaitUntil([&] {
     Socket::ConnectTo(source.port()).Send("\nsane\n");
     return running.Count("sane") > 0;
@@ -293,7 +293,7 @@ TEST(ListenSource, AFullQueueHoldsTheSenderUp) {
   std::string lines(9'999, 'x');
   lines += '\n';
   std::size_t sent = 0;
-  // Until the system takes no more while the source waits for room.
+  // Wait until the system takes no more bytes, because the source waits for room.
   ASSERT_TRUE(WaitUntil([&] {
     const std::size_t before = sent;
     while (const std::size_t count = sender.SendWithoutWaiting(lines)) sent += count;
@@ -351,7 +351,7 @@ TEST(ListenSource, WaitsOutAWantOfDescriptors) {
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(connected, 0);
   EXPECT_TRUE(noticed);
-  EXPECT_TRUE(second.WaitForEnd());  // turned away, as others are
+  EXPECT_TRUE(second.WaitForEnd());  // refused, because the sender is active
   sender.Send("two\n");
   EXPECT_THAT(running.WaitForLines(2), ElementsAre("one", "two"));
 }

@@ -111,7 +111,7 @@ TEST_F(PipeSourceTest, AFullQueueHoldsTheWriterUp) {
   fcntl(write_end_.get(), F_SETFL, O_NONBLOCK);
   std::string lines(99, 'x');
   lines += '\n';
-  // Until the pipe stays full while the source waits.
+  // Wait until the pipe stays full, because the source waits for room.
   ASSERT_TRUE(WaitUntil([&] {
     ssize_t count = 0;
     while ((count = write(write_end_.get(), lines.data(), lines.size())) > 0) {

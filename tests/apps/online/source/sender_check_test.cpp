@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kPieces[] = {1, 3, 100'000};
 
-/// What is passed on of a connection that sends these bytes in pieces of a size, then closes.
+/// The bytes passed on from a connection that sends `bytes` in pieces of a size and then closes.
 std::string PassedOn(const std::string& bytes, std::size_t piece, std::string* problem) {
   SenderCheck check;
   std::string passed;
