@@ -5,10 +5,10 @@
 
 namespace loopgrid {
 
-/// A file that appears under its name whole or not at all: it is written to a temporary beside the
-/// target, which Commit() moves into place. An existing target that is no regular file (a device, a
-/// pipe) is written directly. Every failure, a full disk included, is an Error (kOutput) that
-/// begins `file: `.
+/// Writes a file so that either all of it or nothing appears under its name: the bytes go to a
+/// temporary file in the same folder, which Commit() renames. If the target exists and is not a
+/// regular file (a device, a pipe), it is written directly. Every failure, such as a full disk, is
+/// an Error (kOutput) that begins `file: `.
 class AtomicFile {
  public:
   /// Opens the temporary; throws if the target is a directory or its folder cannot be written.
@@ -21,11 +21,10 @@ class AtomicFile {
 
   void Append(std::string_view bytes);
 
-  /// Writes everything through to the disk, after which little is left that can fail. Only Commit()
-  /// may follow.
+  /// Writes all bytes to the disk, so that Commit() only has to rename. Only Commit() may follow.
   void Finish();
 
-  /// Finishes, if that is not done, and gives the file its name. Nothing may follow.
+  /// Calls Finish() if that has not been done, and gives the file its name. Nothing may follow.
   void Commit();
 
   const std::string& path() const { return path_; }

@@ -5,7 +5,7 @@
 
 namespace loopgrid {
 
-/// Whose fault it is: decides the exit status of the program (2, 3, 4).
+/// The kind of an error. It decides the exit status of the program (2, 3, 4).
 enum class ErrorCode {
   kUsage,   ///< a wrong option, or an option out of range
   kInput,   ///< an input that is missing, unreadable, malformed or empty

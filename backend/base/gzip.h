@@ -5,7 +5,8 @@
 
 namespace loopgrid {
 
-/// The bytes as a gzip file has them; the same each time (no name, no date).
+/// The bytes packed as a gzip file. Equal bytes give equal results: the header has neither a name
+/// nor a date.
 std::string Gzip(std::string_view bytes);
 
 }  // namespace loopgrid

@@ -10,7 +10,7 @@ struct gzFile_s;  // zlib's
 
 namespace loopgrid {
 
-/// The bytes of a file from front to back, unpacked where its content (not its name) is gzip.
+/// Reads the bytes of a file in order. A file whose content is gzip is unpacked, whatever its name.
 /// Every failure is an Error (kInput) that begins `file: `.
 class InputFile {
  public:

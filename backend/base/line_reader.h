@@ -24,10 +24,10 @@ class LineReader {
   /// file. Throws Error (kInput) if the file cannot be read further.
   bool Next(std::string_view* line);
 
-  /// Whether the last line was longer than allowed: it then reads as an empty one.
+  /// Whether the last line was longer than allowed. Next() has then returned an empty line for it.
   bool too_long() const { return too_long_; }
 
-  /// Whether the last line had its line end. One that has not may have been cut anywhere.
+  /// Whether the last line ended with a line end. Otherwise it may have been cut off anywhere.
   bool terminated() const { return terminated_; }
 
   /// Number of the last line, from 1.

@@ -10,8 +10,9 @@
 
 namespace loopgrid {
 
-/// Reads the whole of `text` as a number, whatever the locale. False, and `value` untouched, for
-/// anything else: an empty text, trailing characters, NaN, an infinity, a number out of range.
+/// Reads the whole of `text` as a number; the locale does not matter. Returns false and leaves
+/// `value` unchanged if the text is anything else: empty, a number with characters after it, NaN,
+/// an infinity, or a number out of range.
 template <typename Number>
 bool ParseNumber(std::string_view text, Number* value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
@@ -26,10 +27,10 @@ bool ParseNumber(std::string_view text, Number* value) {
   return true;
 }
 
-/// A field as a message shows it: short, and on one line whatever bytes it holds.
+/// A field in quotes, for a message: a long field is cut, and '?' replaces unprintable bytes.
 std::string Quoted(std::string_view field);
 
-/// Walks over the fields of a line, which spaces and tabs separate.
+/// Reads a line field by field. Spaces and tabs separate fields.
 class FieldCursor {
  public:
   explicit FieldCursor(std::string_view line)
@@ -49,17 +50,17 @@ class FieldCursor {
     return ParseNumber(Next(), value);
   }
 
-  /// The next field as a decimal number; as Next(), but fast for the short ones of logs and graphs.
+  /// The same results as Next(value), but faster for the short decimal numbers in logs and graphs.
   bool NextDecimal(float* value);
   bool NextDecimal(double* value);
 
-  /// Whether nothing but blanks is left.
+  /// Whether only blanks are left.
   bool AtEnd() {
     SkipBlanks();
     return position_ == end_;
   }
 
-  /// How many bytes of the line are behind us.
+  /// How many bytes of the line have been read.
   std::size_t offset() const { return static_cast<std::size_t>(position_ - begin_); }
 
   void SkipBlanks() {

@@ -21,9 +21,9 @@ class WorkerPool {
 
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls work(begin, end) for parts that together make up [0, count), on all threads, and returns
-  /// when all are done. The parts depend on the number of threads: what `work` computes for an
-  /// index must not. It must not throw.
+  /// Splits [0, count) into parts, calls work(begin, end) for each of them on the threads, and
+  /// returns when all calls have returned. The parts depend on the number of threads, so the result
+  /// for an index must not depend on the part that it is in. `work` must not throw.
   void Run(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
 
  private:

@@ -17,14 +17,15 @@ namespace loopgrid {
 ///     PARAMS_SE3OFFSET sensor x y z qx qy qz qw
 ///
 /// I is the upper triangle of the information matrix, row by row, in the order of Pose::Tangent.
-/// What a sensor has seen is taken into the node's frame; it is written as seen from there.
+/// An observation in a sensor's frame is transformed into the node's frame, and is written as one
+/// in the node's frame.
 template <typename Pose>
 std::span<const GraphTag<Pose>> G2oTags();
 
-/// Whether a line with this tag carries what g2o keeps beside the graph: what a laser has measured
-/// at a vertex (ROBOTLASER1, RAWLASER1), a label or an ellipse to draw there (VERTEX_TAG,
-/// VERTEX_ELLIPSE), a parameter (PARAMS_...; those that edges in G2oTags() refer to are read). It
-/// says nothing about where the poses are.
+/// Whether a line with this tag has data that g2o stores in the same file as the graph, and that
+/// says nothing about the poses: laser measurements at a vertex (ROBOTLASER1, RAWLASER1), a label
+/// or an ellipse to draw there (VERTEX_TAG, VERTEX_ELLIPSE), or a parameter (PARAMS_...).
+/// Parameters that edges in G2oTags() refer to are read.
 bool IsG2oData(std::string_view tag);
 
 template <typename Pose>

@@ -22,8 +22,8 @@ struct EdgeEnds {
   std::int64_t line = 0;
 };
 
-/// Puts together a graph from the lines of a file, in any order. What is wrong is an Error (kInput)
-/// that begins `file:line: `.
+/// Builds a graph from the lines of a file, which may come in any order. Whatever is wrong with
+/// them is an Error (kInput) that begins `file:line: `.
 template <typename Pose>
 class GraphBuilder {
  public:
@@ -35,15 +35,16 @@ class GraphBuilder {
 
   void AddNode(const VertexMention& name, const Pose& pose);
   void AddLandmark(const VertexMention& name, const Point& p_map);
-  /// The edges' own indices are not looked at.
+  /// The indices that the edges contain are ignored.
   void AddConstraint(const EdgeEnds& ends, const Constraint<Pose>& constraint);
   void AddObservation(const EdgeEnds& ends, const LandmarkObservation<Pose>& observation);
 
-  /// Where on a node a sensor sits; observations are given in its frame. Known to lines after it.
+  /// The pose of a sensor on a node, for observations given in the sensor's frame. Only later lines
+  /// may refer to it.
   void AddSensor(const VertexMention& name, const Pose& T_node_sensor);
   const Pose& Sensor(const VertexMention& name) const;
 
-  /// The graph, once all lines have been read. Nothing may follow. Adds to `notes`.
+  /// The graph, after all lines have been read. No other call may follow. Adds to `notes`.
   GraphFile<Pose> Finish(const std::vector<VertexMention>& fixed, GraphNotes* notes);
 
  private:

@@ -33,7 +33,7 @@ struct GraphReadOptions {
   bool lenient = false;
 };
 
-/// What was accepted but deserves a word.
+/// What was accepted although it may be a mistake.
 struct GraphNotes {
   struct Kind {
     static constexpr std::size_t kMostMessages = 3;
@@ -41,7 +41,7 @@ struct GraphNotes {
     std::int64_t count = 0;
     std::vector<std::string> messages;  ///< the first few, beginning `file:line: `
   };
-  Kind data_lines;                 ///< what g2o keeps beside the graph (IsG2oData), passed over
+  Kind data_lines;                 ///< lines without poses or edges (IsG2oData), passed over
   Kind unknown_tags;               ///< lines passed over in lenient reading
   Kind indefinite_information;     ///< matrices replaced in lenient reading
   Kind normalized_quaternions;     ///< whose length is not 1, even up to six digits
@@ -72,19 +72,20 @@ GraphFile<Pose> ReadGraphOf(const std::string& path, const GraphReadOptions& opt
 
 enum class GraphFormat { kG2o, kToro };
 
-/// What a file of this name is written as: TORO for `.graph` and `.toro`, g2o for all else; `.gz`
-/// at the end does not count.
+/// The format in which a file of this name is written: TORO for `.graph` and `.toro`, g2o for all
+/// other names. A `.gz` at the end is ignored.
 GraphFormat GraphFormatOf(const std::string& path);
 
-/// The text of a graph file: vertices, fixed ones, edges; numbers with all their digits. What the
-/// formats have no place for, Constraint::robust, is left out. Throws Error (kUsage) for landmarks
-/// in TORO.
+/// The text of a graph file: vertices, fixed vertices, edges; numbers with all their digits. The
+/// formats cannot say which constraints are robust, so that is left out. Throws Error (kUsage) for
+/// landmarks in TORO.
 template <typename Pose>
 std::string FormatGraph(const PoseGraph<Pose>& graph, const GraphIds& ids = {},
                         GraphFormat format = GraphFormat::kG2o);
 
-/// Writes it in the format that the name asks for, gzipped if it ends in `.gz`, whole or not at
-/// all. Throws Error (kOutput), also (`file: `) for landmarks in TORO.
+/// Writes that text to a file in the format that its name asks for, gzipped if the name ends in
+/// `.gz`. Writes the whole file or nothing. Throws Error (kOutput), also (`file: `) for landmarks
+/// in TORO.
 template <typename Pose>
 void WriteGraph(const std::string& path, const PoseGraph<Pose>& graph, const GraphIds& ids = {});
 

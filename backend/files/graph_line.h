@@ -12,8 +12,8 @@
 
 namespace loopgrid {
 
-/// A line of a graph file, field after field. What is wrong with it is an Error (kInput) that
-/// begins `file:line: `.
+/// Reads a line of a graph file field by field. Whatever is wrong with the line is an Error
+/// (kInput) that begins `file:line: `.
 class GraphLine {
  public:
   GraphLine(const LineReader& lines, std::string_view text, const GraphReadOptions& options,
@@ -48,7 +48,7 @@ class GraphLine {
   }
 
   bool AtEnd() { return fields_.AtEnd(); }
-  /// Refuses what follows the last field.
+  /// Throws if anything follows the last field.
   void End();
 
   /// Makes the information matrix of the edge between two vertices, given by their ids, positive
@@ -59,7 +59,7 @@ class GraphLine {
                           Eigen::Matrix<double, kSize, kSize>* matrix) const;
 
   GraphNotes* notes() const { return notes_; }
-  /// Counts the line, and says why if it is among the first.
+  /// Counts the line, and keeps a message about it if it is one of the first.
   void Note(GraphNotes::Kind* kind, const std::string& message) const;
 
   Error ErrorHere(const std::string& problem) const { return lines_.ErrorHere(problem); }

@@ -15,7 +15,7 @@
 
 namespace loopgrid {
 
-/// What nodes and landmarks are called in a file (see GraphIds).
+/// The names of nodes and landmarks in a file (see GraphIds).
 class GraphNames {
  public:
   GraphNames(std::size_t nodes, const GraphIds& ids) : nodes_(nodes), ids_(ids) {}
@@ -37,7 +37,7 @@ class GraphNames {
   const GraphIds& ids_;
 };
 
-/// The text of a graph file, line after line.
+/// Makes the text of a graph file line by line.
 class GraphText {
  public:
   /// Begins a line.

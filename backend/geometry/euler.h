@@ -13,12 +13,13 @@ inline Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& angles) {
          Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
 }
 
-/// (roll, pitch, yaw) of a rotation, pitch in [-pi/2, pi/2], the others in [-pi, pi]. Where pitch
-/// is at its ends, only a combination of the two others is known; roll is 0 there.
+/// (roll, pitch, yaw) of a rotation, pitch in [-pi/2, pi/2], the others in [-pi, pi]. At a pitch of
+/// +-pi/2 only the sum or the difference of the two others is determined; roll is 0 there.
 inline Eigen::Vector3d RollPitchYaw(const Eigen::Quaterniond& q) {
   const Eigen::Matrix3d R = q.toRotationMatrix();
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
-  // Near the ends of pitch roll is vague, hence yaw is what is left of the rotation without it.
+  // Near a pitch of +-pi/2 roll has large rounding errors. Yaw is computed from the rotation
+  // without this roll, so that the errors cancel.
   const double roll = cos_pitch < 1e-14 ? 0.0 : std::atan2(R(2, 1), R(2, 2));
   const double sr = std::sin(roll);
   const double cr = std::cos(roll);

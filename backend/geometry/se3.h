@@ -31,8 +31,8 @@ class SE3 {
       : translation_(translation), rotation_(rotation) {
     Normalize();
   }
-  /// From (x, y, z, qx, qy, qz), w being what makes the quaternion a unit one. A vector part longer
-  /// than 1, which no unit quaternion has, is half a turn about its direction.
+  /// From (x, y, z, qx, qy, qz); w is chosen so that the quaternion has length 1. A vector part
+  /// longer than 1, which no unit quaternion has, gives half a turn about its direction.
   explicit SE3(const Tangent& coordinates) : translation_(coordinates.head<3>()) {
     const double squared = coordinates.tail<3>().squaredNorm();
     rotation_.vec() = coordinates.tail<3>();

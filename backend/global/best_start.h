@@ -28,19 +28,22 @@ struct StartTrial {
 
 struct BestStartResult {
   std::vector<StartTrial> trials;  ///< in the order in which they were made; at least one
-  std::size_t best = 0;            ///< of these, whose end the graph is at
-  /// Of that end; only for kAuto, and if F is a plain sum of squares, that is without robust losses
-  /// and with errors as in ConstraintError.
+  std::size_t best = 0;  ///< index of the trial with the lowest F; the graph is left at its end
+  /// Says whether that end is the global optimum. It exists only for kAuto and if F is a plain sum
+  /// of squares: no robust loss, and errors as in ConstraintError.
   std::optional<OptimalityCertificate> certificate;
 };
 
-/// Optimises from a start of one's choice; or, with kAuto, from one that is good enough: from the
-/// graph's own poses if F there is no more than expected, or otherwise, of these and the chordal
-/// guess, from where F is lower. As long as the lowest end found cannot be told to be the global
-/// optimum, the other starts are tried too; where there is no certificate, as long as F there is
-/// more than expected, which is the number of degrees of freedom. Starts at (nearly) the same poses
-/// as one that has been tried are left out. A spanning tree takes the place of a chordal guess that
-/// does not exist. Throws as Optimizer::Optimize does.
+/// Optimises from the start that is asked for. With kAuto it tries several starts:
+/// - The first start is the graph's own poses if F there is at most the number of degrees of
+///   freedom, which is its expected value. Otherwise it is the own poses or the chordal guess,
+///   whichever has the lower F.
+/// - The other starts are tried one after the other until the lowest end found is good enough: it
+///   is certified as the global optimum, or, where there is no certificate, F is at most the number
+///   of degrees of freedom.
+/// - A start whose poses are nearly those of an earlier start is left out.
+/// If there is no chordal guess, the spanning tree takes its place. Throws as Optimizer::Optimize
+/// does.
 template <typename Pose>
 BestStartResult OptimizeFromBestStart(PoseGraph<Pose>* graph, Optimizer<Pose>* optimizer,
                                       InitialGuess start = InitialGuess::kAuto);

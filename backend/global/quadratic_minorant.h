@@ -6,11 +6,11 @@
 
 namespace loopgrid {
 
-/// A function of the pose matrices (R, t) of an edge's ends that is nowhere above the edge's
-/// e^T Omega e and touches it at the present poses:
-///   alpha |r|^2 + 2 beta^T r + 2 <M, P> + a constant,
-/// r being the position and P = R_from^T R_to the rotation of the second end as seen from the first
-/// (r = R_from^T (t_to - t_from)). It is quadratic in the matrices, whatever Omega is.
+/// A lower bound of an edge's e^T Omega e, as a function of the pose matrices (R, t) of its ends:
+///   alpha |r|^2 + 2 beta^T r + 2 <M, P> + a constant.
+/// Here r = R_from^T (t_to - t_from) and P = R_from^T R_to are the position and the rotation of the
+/// second end as seen from the first. The bound is quadratic in the matrices, whatever Omega is,
+/// and equal to e^T Omega e at the present poses.
 template <typename Pose>
 struct QuadraticMinorant {
   static constexpr int kDim = Pose::Point::RowsAtCompileTime;
@@ -18,14 +18,14 @@ struct QuadraticMinorant {
   double alpha = 0.0;
   typename Pose::Point beta = Pose::Point::Zero();
   Eigen::Matrix<double, kDim, kDim> M = Eigen::Matrix<double, kDim, kDim>::Zero();
-  /// How far below e^T Omega e it is at the present poses: more than 0 where it does not touch,
-  /// which is with correlated translation and rotation in 3D, and next to half a turn in 2D.
+  /// How far the bound is below e^T Omega e at the present poses. It is 0 except where translation
+  /// and rotation are correlated in 3D, and where the rotational error is near half a turn in 2D.
   double slack = 0.0;
 };
 
-/// There are several such functions where the rotational information is so anisotropic that one of
-/// its eigenvalues exceeds the sum of the two others, in 3D: the error itself, or one that remains
-/// convex around the present poses.
+/// Which bound to use for a 3D rotation. The two differ only where one eigenvalue of the rotational
+/// information exceeds the sum of the two others: kExact is the error itself, kConvex is a bound
+/// that is convex around the present poses.
 enum class MinorantOf3dRotation { kExact, kConvex };
 
 template <typename Pose>

@@ -4,15 +4,18 @@
 
 namespace loopgrid {
 
-/// What the increments are that an optimiser computes, and with them the coordinates of the errors.
+/// The meaning of the increments that an optimiser computes. It also determines the coordinates of
+/// the errors.
 enum class Parametrization {
   /// Motions in the pose's own frame (Pose::Boxplus): the tutorial's Algorithm 2.
   kManifold,
-  /// The same by the exponential map (Pose::Exp): angles in radians in 3D, too.
+  /// Motions in the pose's own frame by the exponential map (Pose::Exp). Rotations are then in
+  /// radians in 3D, too.
   kExponential,
-  /// Additions to (x, y, theta) or (x, y, z, roll, pitch, yaw), as if space were Euclidean: the
+  /// Increments are added to (x, y, theta) or (x, y, z, roll, pitch, yaw) as to a vector: the
   /// tutorial's Algorithm 1, for comparison. Rotational errors in 3D are half of roll, pitch and
-  /// yaw, so that information matrices keep their meaning and small errors their values.
+  /// yaw. For small rotations these are the coordinates of kManifold, so that the same information
+  /// matrices can be used.
   kEuler,
 };
 

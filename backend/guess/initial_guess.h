@@ -12,13 +12,13 @@ namespace loopgrid {
 template <typename Pose>
 void SetSpanningTreeGuess(PoseGraph<Pose>* graph);
 
-/// The minimum of F with its two difficulties taken out one after the other: first the rotations as
-/// if they were any matrices, which is linear, then moved to the nearest rotations; then, given
-/// them, positions and landmarks, which is linear too (Carlone, Tron, Daniilidis and Dellaert, ICRA
-/// 2015: chordal relaxation). What is marked robust counts a millionth of its information, so that
-/// gross outliers hardly move the guess. Does not depend on the poses, but for those of held nodes
-/// and of parts that only landmarks join to them. False, and the graph as it was, if either system
-/// is not positive definite: constraints without information on some rotation or position.
+/// Chordal relaxation (Carlone, Tron, Daniilidis and Dellaert, ICRA 2015): approximates the minimum
+/// of F by two linear problems. The first finds rotations as arbitrary matrices and replaces each
+/// by the nearest rotation. The second finds positions and landmarks for these rotations. Edges
+/// marked robust are weighted by 1e-6, so that gross outliers hardly move the guess. The result
+/// depends on the poses of held nodes, and on those of parts that only landmarks join to held
+/// nodes, but on no other pose. Returns false and leaves the graph unchanged if one of the linear
+/// systems is not positive definite, because no constraint determines some rotation or position.
 template <typename Pose>
 [[nodiscard]] bool SetChordalGuess(PoseGraph<Pose>* graph);
 

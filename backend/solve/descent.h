@@ -16,7 +16,8 @@ namespace loopgrid {
 template <typename Pose>
 class Descent;
 
-/// How steps are made of linear problems. Owns what it has learnt on the way: a damping, a radius.
+/// Decides on the steps of a descent. Keeps what it needs from one step to the next, such as a
+/// damping or a radius.
 template <typename Pose>
 class StepMethod {
  public:
@@ -25,7 +26,7 @@ class StepMethod {
   /// Makes a step of the descent, or says why there is none.
   virtual std::optional<Termination> MakeStep(Descent<Pose>* descent) = 0;
 
-  /// For the record.
+  /// The present damping, for the trace; 0 for methods without one.
   virtual double damping() const { return 0.0; }
 };
 
@@ -35,18 +36,18 @@ struct DescentOptions {
   double absolute_decrease = 0.0;
   bool trace = false;
   StepObserver observer;  ///< none if empty
-  Stopwatch watch;        ///< of IterationRecord::seconds
+  Stopwatch watch;        ///< measures IterationRecord::seconds
 };
 
-/// What became of a step that was tried.
+/// The outcome of a step that was tried.
 struct Trial {
   enum class Kind { kTaken, kNegligible, kRejected };
   Kind kind;
-  double gain = 0.0;  ///< decrease of F as a share of what was promised, if taken
+  double gain = 0.0;  ///< if taken: decrease of F, divided by the decrease that was promised
 };
 
-/// The way of a graph from where it is down to a minimum of F: knows the current point, F there and
-/// the linear problem there, keeps the best point and the trace. A StepMethod decides on the steps.
+/// Moves a graph step by step towards a minimum of F. Knows the current point, F and the linear
+/// problem there; keeps the best point and the trace. A StepMethod decides on the steps.
 template <typename Pose>
 class Descent {
  public:
@@ -60,23 +61,25 @@ class Descent {
 
   // For methods:
 
-  /// At the current point. Its factor is whatever the method has made.
+  /// The linear problem at the current point. The method makes its factor.
   Linearization<Pose>& linearization() { return linearization_; }
   double error() const { return result_.final_error; }  ///< F at the current point
   double negligible() const;                            ///< decrease of F at which to stop
   bool may_continue() const { return result_.iterations < options_.max_iterations; }
 
-  /// Goes on by dx, whether F falls or not.
+  /// Moves the graph by dx, whether F falls or not.
   void Step(const Eigen::VectorXd& dx);
 
-  /// Goes on by dx if that lowers F; `promised` is the decrease by the quadratic model.
+  /// Moves the graph by dx if that lowers F. `promised` is the decrease that the quadratic model
+  /// predicts.
   Trial TryStep(const Eigen::VectorXd& dx, double promised);
 
-  /// Notes the current point in the trace. The descent itself does so whenever a method has made a
-  /// step; a method that makes several at a time does it in between.
+  /// Adds the current point to the trace. The descent does so after each MakeStep; a method that
+  /// makes several steps in one MakeStep calls this after each of them but the last.
   void Record(double damping);
 
-  /// Where the descent may return to, as if what follows had not been.
+  /// A point to which the descent can return. The steps since then are then neither counted nor in
+  /// the trace.
   struct Checkpoint {
     std::vector<Pose> poses;
     std::vector<typename Pose::Point> landmarks;
@@ -97,8 +100,8 @@ class Descent {
   Linearization<Pose>& linearization_;
   PoseGraph<Pose>& graph_;
   OptimizerResult result_;
-  std::optional<Checkpoint> best_;  // if the descent has gone uphill since
-  double last_step_ = 0.0;          // its length
+  std::optional<Checkpoint> best_;  // the lowest point before a step that did not lower F
+  double last_step_ = 0.0;          // length of the last step
 };
 
 extern template class Descent<SE2>;

@@ -7,8 +7,9 @@
 
 namespace loopgrid {
 
-/// Powell's dog leg (1970): along a DogLegPath as far as the model has proved right, in the
-/// coordinates in which the Hessian's diagonal is 1. One factorisation a step.
+/// Powell's dog leg (1970): each step goes along a DogLegPath up to the radius within which the
+/// quadratic model is trusted. Lengths are measured in coordinates in which the Hessian's diagonal
+/// is 1. Costs one factorisation a step.
 template <typename Pose>
 class DogLeg : public StepMethod<Pose> {
  public:
@@ -17,7 +18,7 @@ class DogLeg : public StepMethod<Pose> {
 
  private:
   double radius_ = std::numeric_limits<double>::infinity();  // of the trust region
-  double damping_ = 0.0;  // only as much as makes the Hessian positive semidefinite
+  double damping_ = 0.0;  // more than 0 only where the Hessian is not positive semidefinite
 };
 
 extern template class DogLeg<SE2>;

@@ -7,8 +7,8 @@
 namespace loopgrid {
 namespace {
 
-// When F falls by more than the first share of what was promised, the next step may be bolder; by
-// less than the second, it has to be more careful.
+// If F falls by more than the first share of what was promised, the next step may be longer; if by
+// less than the second, it has to be shorter.
 constexpr double kTrusted = 0.75;
 constexpr double kDistrusted = 0.25;
 
@@ -22,7 +22,7 @@ Eigen::VectorXd DogLegPath::PointWithin(double radius) const {
   const double first_leg = Length(cauchy_);
   if (first_leg >= radius) return radius / first_leg * cauchy_;
   const Eigen::VectorXd leg = newton_ - cauchy_;
-  // The root of |cauchy + t leg| = radius in (0, 1], by the formula in which nothing cancels.
+  // The root of |cauchy + t leg| = radius in (0, 1], by the formula without cancellation.
   const double a = Product(leg, leg);
   const double half_b = Product(cauchy_, leg);
   const double c = radius * radius - first_leg * first_leg;

@@ -6,10 +6,11 @@ namespace loopgrid {
 
 /// The path on which Powell's dog leg (1970) looks for a step: from zero straight to the minimum
 /// of the quadratic model along the steepest descent (the Cauchy point), from there straight to the
-/// minimum of the model (the Gauss-Newton step). Along it lengths grow and the model falls.
+/// minimum of the model (the Gauss-Newton step). Along the path the distance from zero grows and
+/// the model falls.
 class DogLegPath {
  public:
-  /// Lengths are those of the vectors whose i-th coordinate is multiplied by the root of scale(i).
+  /// The length of v is the root of the sum of scale(i) * v(i)^2.
   DogLegPath(Eigen::VectorXd cauchy, Eigen::VectorXd newton, Eigen::VectorXd scale);
 
   /// The last point of the path that is not longer than `radius`.
@@ -25,8 +26,8 @@ class DogLegPath {
   Eigen::VectorXd scale_;
 };
 
-/// The radius within which the model is trusted after a step of `length` within `radius` that has
-/// lowered F by `gain` times what the model promised; negative gains are of steps not taken.
+/// The radius for the next step, after a step of `length` within `radius`. `gain` is the decrease
+/// of F divided by the decrease that the model promised; it is negative if the step was not taken.
 double NextRadius(double radius, double length, double gain);
 
 }  // namespace loopgrid

@@ -6,7 +6,7 @@
 
 namespace loopgrid {
 
-/// Full steps, whether they lower F or not: Algorithms 1 and 2 of the tutorial to the letter.
+/// Takes full steps whether they lower F or not, exactly as Algorithms 1 and 2 of the tutorial do.
 template <typename Pose>
 class GaussNewton : public StepMethod<Pose> {
  public:

@@ -8,10 +8,10 @@
 
 namespace loopgrid {
 
-/// How well a stage of a graduated descent has to be minimised.
+/// How exactly a stage of a graduated descent is minimised.
 enum class StageGoal {
   kFollow,    ///< a few steps: the next stage has another minimum anyway
-  kMinimize,  ///< as the options say
+  kMinimize,  ///< until the limits in the options end it
 };
 
 /// Minimises the graph's F with a loss, from where the graph is.

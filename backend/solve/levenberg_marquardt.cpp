@@ -14,24 +14,26 @@ constexpr double kLargestDamping = 1e10;
 constexpr double kDampingFactor = 10.0;
 constexpr double kOvershot = 0.25;  // share of the promised decrease
 
-// When F fell as the model promised, to within this share, the Hessian has hardly changed, and its
-// factor serves for the next step too (a chord step of Newton's method), as long as each step
-// promises less than this share of the one before.
+// If the decrease of F differs from what the model promised by less than the first share, the
+// Hessian has hardly changed, and its factor is used for the next step, too (a chord step of
+// Newton's method), as long as each step promises less than the second share of the one before.
 constexpr double kGoodModel = 0.1;
 constexpr double kSlow = 0.1;
 
 // A step of length d (metres or radians) changes Jacobians by about d, and the smallest eigenvalue
 // of a Hessian with the condition number k, relative to itself, by about 2 d sqrt(k) + d^2 k. This
-// is d^2 k for a change by a tenth: while it is less, the old factor tells a minimum.
+// is d^2 k for a change by a tenth: as long as d^2 k is less, the old factor shows whether the
+// point is a minimum.
 constexpr double kSmallChange = 2.5e-3;
 
-// Full steps on trial after one that does not lower F, and trials that may fail in a row. A trial
-// has to lower F by this share of what its first step promised: without a bound it could go to and
-// fro between points of nearly the same F.
+// After a full step that does not lower F, a trial takes up to kLookAhead full steps. After kTrials
+// trials that failed in a row there are no more. A trial succeeds if it lowers F by the share
+// kWorthwhile of what its first step promised. Without such a bound, steps could alternate between
+// points of nearly the same F for ever.
 constexpr int kLookAhead = 3;
 constexpr int kTrials = 3;
 constexpr double kWorthwhile = 0.1;
-// A trial whose F falls by this factor at a step is on its way back to the valley, and goes on.
+// A trial may take more steps as long as each multiplies F by less than this.
 constexpr double kReturns = 0.1;
 
 }  // namespace
@@ -60,7 +62,7 @@ std::optional<Termination> LevenbergMarquardt<Pose>::MakeStep(Descent<Pose>* des
     switch (TryFactor(kInfinity, descent)) {
       case Trial::Kind::kTaken:
         if (last_gain_ < kOvershot) {
-          // F is little lower on the other side of the valley: shorter steps from here on.
+          // The step went beyond the minimum along it, so the next ones should be shorter.
           if (damping_ == 0.0) first_damping_ = NaturalDamping(linearization);
           Strengthen();
         } else {
@@ -71,7 +73,7 @@ std::optional<Termination> LevenbergMarquardt<Pose>::MakeStep(Descent<Pose>* des
         if (was_rejected) return Termination::kStalled;
         if (damping_ == 0.0) return Termination::kConverged;
         if (was_indefinite) return Termination::kIndefinite;
-        Weaken();  // strong damping makes small steps: no sign of a minimum
+        Weaken();  // the step may be small only because the damping is strong
         break;
       case Trial::Kind::kRejected:
         if (damping_ == 0.0) {
@@ -106,9 +108,9 @@ Trial::Kind LevenbergMarquardt<Pose>::TryFactor(double most_promised, Descent<Po
   return trial.kind;
 }
 
-// In a valley that bends, a Gauss-Newton step leads up its side and the next ones down to its floor
-// again, further along than short steps get: worth a trial (the watchdog of Chamberlain et al.
-// 1982).
+// In a curved valley of F, a Gauss-Newton step along the valley raises F, and the next steps lower
+// it again, further along the valley than damped steps would get. So some full steps are taken on
+// trial (the watchdog technique of Chamberlain et al. 1982).
 template <typename Pose>
 bool LevenbergMarquardt<Pose>::LookAhead(const Eigen::VectorXd& first_step,
                                          Descent<Pose>* descent) {

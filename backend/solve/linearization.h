@@ -12,22 +12,22 @@
 
 namespace loopgrid {
 
-/// The linear problem H dx = -b at one point of a graph, and the factor that solves it. The graph
-/// goes through three stages, of which each needs the one before: SetStructure whenever edges,
-/// nodes or held nodes have changed, Linearize wherever poses or the objective have, Factorize
-/// wherever H or the damping has. What was allocated and analysed is used again.
+/// The linear problem H dx = -b at one point of a graph, and the factor that solves it. There are
+/// three stages, each of which needs the one before: SetStructure after edges, nodes or held nodes
+/// have changed; Linearize after poses or the objective have changed; Factorize after H or the
+/// damping has changed. Memory and the analysis of the structure are used again.
 template <typename Pose>
 class Linearization {
  public:
   static constexpr int kDof = Pose::kDof;
 
-  /// `threads` to linearise large graphs; the result does not depend on it.
+  /// `threads` is used to linearise large graphs; the result does not depend on it.
   explicit Linearization(int threads) : workers_(threads) {}
 
   void SetStructure(const PoseGraph<Pose>& graph);
 
-  /// Computes H and b at the graph's poses and landmarks; returns F. The graph has to stay, and to
-  /// be at this point whenever Factorize is called.
+  /// Computes H and b at the graph's poses and landmarks; returns F. The graph must exist, with the
+  /// same poses and landmarks, whenever Factorize is called.
   double Linearize(const PoseGraph<Pose>& graph, const Objective& objective);
 
   /// Factorises H + damping * diag(Scale()). There is a factor unless the result is kIndefinite. If
@@ -62,8 +62,8 @@ class Linearization {
   /// v^T H v.
   double Curvature(const Eigen::VectorXd& v) const { return v.dot(equations_.hessian() * v); }
 
-  /// The Hessian's diagonal (Marquardt's scaling), kept off zero: it may be that no constraint says
-  /// anything about a direction.
+  /// The Hessian's diagonal (Marquardt's scaling). Entries near zero, of directions that no
+  /// constraint says anything about, are replaced by a small positive number.
   Eigen::VectorXd Scale() const;
 
   /// How close to singular the factorised matrix is, see SparseCholesky::smallest_pivot.
@@ -75,8 +75,8 @@ class Linearization {
   void Move(const Eigen::VectorXd& dx, Parametrization parametrization,
             PoseGraph<Pose>* graph) const;
 
-  /// The covariances at the point, if has_undamped_factor(). They refer to this object, and are
-  /// valid until it is used again.
+  /// The covariances at the point; requires has_undamped_factor(). They refer to this object and
+  /// are valid until it is used again.
   Marginals<Pose> ComputeMarginals(const PoseGraph<Pose>& graph) const {
     return Marginals<Pose>(graph, equations_, factor_, objective_.loss);
   }

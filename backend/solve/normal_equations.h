@@ -12,9 +12,9 @@
 
 namespace loopgrid {
 
-/// What is minimised, F, and in which coordinates.
+/// The loss in F, the function that is minimised, and the coordinates of the increments.
 struct Objective {
-  RobustLoss loss;  ///< of the constraints and observations marked robust
+  RobustLoss loss;  ///< for the constraints and observations marked robust
   Parametrization parametrization = Parametrization::kManifold;
 };
 
@@ -38,11 +38,12 @@ class NormalEquations {
   static constexpr int kDof = Pose::kDof;
   using Hessian = SymmetricBlockMatrix<kDof>;
 
-  /// Adopts the structure of the graph. True if the block pattern of the Hessian changed.
+  /// Prepares for the structure of the graph. Returns whether the block pattern of the Hessian has
+  /// changed.
   bool SetStructure(const PoseGraph<Pose>& graph);
 
-  /// Computes H and b at the graph's poses, each constraint weighted by its loss; returns F. With
-  /// the same bits whatever the number of workers, or without any.
+  /// Computes H and b at the graph's poses, each edge weighted by its loss; returns F. The results
+  /// have the same bits for any number of workers, and without any.
   double Linearize(const PoseGraph<Pose>& graph, const Objective& objective,
                    WorkerPool* workers = nullptr);
 

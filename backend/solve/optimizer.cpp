@@ -14,8 +14,8 @@
 namespace loopgrid {
 namespace {
 
-/// Steps of a stage of a graduated loss that only has to be followed, and the share of F at which
-/// it may end earlier.
+/// A stage of StageGoal::kFollow takes at most so many steps. It ends earlier if the next step
+/// promises to lower F by less than this share.
 constexpr int kFollowingSteps = 3;
 constexpr double kFollowingDecrease = 1e-3;
 
@@ -86,7 +86,8 @@ OptimizerResult Optimizer<Pose>::Optimize(PoseGraph<Pose>* graph, const StepObse
   return result;
 }
 
-// What has been added can lower F by no more than what it adds to it: the rest is at its minimum.
+// The known part of the graph is at its minimum. So the sum can fall by no more than what the new
+// edges add to F.
 template <typename Pose>
 bool Optimizer<Pose>::IsAtOptimum(const PoseGraph<Pose>& graph, double* error) const {
   const PoseGraph<Pose>& known = end_.graph;

@@ -12,9 +12,9 @@
 
 namespace loopgrid {
 
-/// Least-squares optimisation of a pose graph. Keep the object while a graph grows: what was
-/// allocated and analysed is used again, and what is new costs nothing beyond a look at F as long
-/// as it agrees with the rest. HeldNodes() do not move.
+/// Least-squares optimisation of a pose graph. Keep the object while a graph grows: memory and the
+/// analysis of the structure are used again, and if the new edges add next to nothing to F, nothing
+/// but F is computed. HeldNodes() do not move.
 template <typename Pose>
 class Optimizer {
  public:
@@ -23,18 +23,19 @@ class Optimizer {
 
   const OptimizerOptions& options() const { return options_; }
 
-  /// Moves the graph's poses and landmarks, from where they are, to a minimum of F, or to the best
-  /// point on the way. Throws Error (kInput) if the graph is not valid (see Validate); a graph with
-  /// several components is optimised as such. An observer is called from this thread.
+  /// Moves the graph's poses and landmarks from where they are to a minimum of F, or to the lowest
+  /// point found if the limits end the descent before. All components of the graph are optimised.
+  /// Throws Error (kInput) if the graph is not valid (see Validate). The observer is called from
+  /// this thread.
   OptimizerResult Optimize(PoseGraph<Pose>* graph, const StepObserver& observer = {});
 
-  /// Covariances at the graph's poses and landmarks, for local motions (Pose::Boxplus); nothing if
-  /// the Hessian there is not positive definite. Right after Optimize of the same graph its
-  /// factorisation is used. Valid until the optimiser is used again.
+  /// Covariances of local motions (Pose::Boxplus) at the graph's poses and landmarks; nothing if
+  /// the Hessian there is not positive definite. If Optimize has just been called for the same
+  /// graph, its factorisation is used. The result is valid until the optimiser is used again.
   std::optional<Marginals<Pose>> ComputeMarginals(const PoseGraph<Pose>& graph);
 
  private:
-  /// Where the last call has ended.
+  /// The end of the last call of Optimize.
   struct End {
     PoseGraph<Pose> graph;
     double error = 0.0;

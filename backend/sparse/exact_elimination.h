@@ -10,12 +10,13 @@ enum class Definiteness {
   kIndefinite,
 };
 
-/// EliminateColumns with twice the digits. The columns of the factor, rounded, go to `panel`, which
-/// has the leading dimension of F; the Schur complement stays in F. `noise` has, for each row, how
-/// wrong its diagonal entry may be; for the rows below the pivots it grows by what elimination
-/// adds. A pivot within the noise is taken for zero, and its column gets an infinite pivot:
-/// solutions have a zero there. If it is more negative, the matrix is indefinite, and the rest is
-/// left undone.
+/// EliminateColumns with twice the digits. The columns of the factor, rounded to double, go to
+/// `panel`, which has the leading dimension of F; the Schur complement stays in F.
+///
+/// noise[i] is a bound on the error of the diagonal entry of row i. Elimination increases it for
+/// the rows that remain. A pivot that is not larger than its noise is taken for zero: its column in
+/// the panel gets an infinite pivot and zeros below, so that solutions have a zero there. If a
+/// pivot is below minus its noise, the matrix is indefinite and elimination stops.
 [[nodiscard]] Definiteness EliminateExactly(DoubleDouble* F, int ld, int size, int pivots,
                                             double* noise, double* panel);
 

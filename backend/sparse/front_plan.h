@@ -10,10 +10,10 @@
 
 namespace loopgrid {
 
-/// What a multifrontal factorisation of a sparse matrix of dense blocks needs to know before it
-/// sees any number: the order of elimination, which blocks of the matrix each supernode's dense
-/// front is made of, and where its results lie in memory. Numbers are counted, not blocks. Columns
-/// of fronts are PaddedRows apart.
+/// The part of a multifrontal factorisation of a sparse matrix of dense blocks that depends only on
+/// the matrix's pattern: the order of elimination, the blocks of the matrix that make up each
+/// supernode's dense front, and the places of the results in memory. Sizes and places count
+/// numbers, not blocks. Columns of fronts are PaddedRows apart.
 class FrontPlan {
  public:
   /// A block of the matrix below the diagonal and where it goes in its supernode's front.
@@ -28,8 +28,8 @@ class FrontPlan {
   explicit FrontPlan(int dim) : dim_(dim) {}
 
   /// Orders the block columns (minimum degree, for large matrices nested dissection too) and plans.
-  /// For a matrix that has grown since the last call the order is kept, new columns last, while
-  /// that costs little fill.
+  /// For a matrix that has grown since the last call, the order is kept and new columns come last,
+  /// as long as this costs little fill.
   void Analyze(int cols, std::span<const BlockPlace> places);
 
   const SymbolicFactor& structure() const { return structure_; }
@@ -47,12 +47,12 @@ class FrontPlan {
   int front_size(int s) const { return dim_ * (structure_.columns(s) + structure_.row_count(s)); }
   int pivots(int s) const { return dim_ * structure_.columns(s); }
 
-  /// Where the supernode's columns of the factor begin among all.
+  /// Where the supernode's columns begin in the array of the factor.
   std::size_t panel_start(int s) const { return panel_start_[ToIndex(s)]; }
   std::size_t panels_size() const { return panel_start_.back(); }
 
-  /// Where the supernode's update, a Schur complement that waits for its parent, begins on the
-  /// stack of them.
+  /// Where the supernode's update begins on the stack of updates. An update is the Schur complement
+  /// that elimination leaves for the parent supernode.
   std::size_t update_start(int s) const { return update_start_[ToIndex(s)]; }
   std::size_t updates_size() const { return updates_size_; }
 

@@ -6,8 +6,8 @@ namespace loopgrid {
 
 /// Dense kernels of the sparse Cholesky factorisation, for column-major matrices whose leading
 /// dimension is a multiple of kRowAlignment: rows are computed in groups of that many, so the
-/// padding rows below a matrix may be written. The same bits on every x86-64 machine: AVX2 is
-/// used where there is one, in the same order of operations.
+/// padding rows below a matrix may be written. The results have the same bits on every x86-64
+/// machine: AVX2 is used where the processor has it, in the same order of operations.
 inline constexpr int kRowAlignment = 4;
 
 /// The smallest leading dimension for this many rows.
@@ -43,8 +43,8 @@ void MultiplySubtract(double* C, int ldc, const double* A, int lda, StridedMatri
 [[nodiscard]] bool EliminateColumns(double* F, int ld, int size, int pivots,
                                     const double* smallest_pivots);
 
-/// Right-hand sides that are solved for together, side by side: x[lanes * i + k] is row i of the
-/// k-th. One, or as many as a register holds.
+/// The largest number of right-hand sides that are solved together (`lanes` below): as many as a
+/// register holds. They lie side by side: x[lanes * i + k] is row i of the k-th.
 inline constexpr int kMostLanes = 4;
 
 /// With the first columns L = (L11; L21) of a factor, the rows x = (x1; x2) of right-hand sides
@@ -63,8 +63,8 @@ struct FrontalKernels {
   decltype(&SolveBackward) solve_backward;
 };
 
-/// The version for every processor, and the one for those with AVX2; null if this is none. For
-/// tests: the functions above are the fastest version that runs here.
+/// The version for every processor, and the version for processors with AVX2, which is null if this
+/// one has no AVX2. For tests: the functions above choose the fastest version that runs here.
 const FrontalKernels& BaselineKernels();
 const FrontalKernels* Avx2Kernels();
 

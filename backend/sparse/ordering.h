@@ -15,9 +15,9 @@ namespace loopgrid {
 std::vector<int> MinimumDegreeOrder(int n, std::span<const BlockPlace> places);
 
 /// Nested dissection (George 1973) by METIS's multilevel partitioning (Karypis and Kumar 1998): ten
-/// times slower, but better for large graphs that fill an area. METIS draws on the C library's
-/// rand(), here on a sequence of its own: the order is reproducible, and the program's sequence
-/// undisturbed, as long as no other thread calls rand() at the same time.
+/// times slower, but better for large graphs that fill an area. METIS uses the C library's rand().
+/// It gets a sequence of its own here, so that the order is reproducible and the program's sequence
+/// is not disturbed, as long as no other thread calls rand() at the same time.
 std::vector<int> NestedDissectionOrder(int n, std::span<const BlockPlace> places);
 
 }  // namespace loopgrid

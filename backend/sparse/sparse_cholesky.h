@@ -26,14 +26,15 @@ class SparseCholesky {
   void Analyze(const Matrix& H);
 
   /// Factorises H, plus a diagonal matrix if its entries are given. H must have the pattern that
-  /// was analysed. False if the sum is not positive definite, or so close to singular that pivots
-  /// are mostly rounding errors; then there is no factor.
+  /// was analysed. Returns false, without a factor, if the sum is not positive definite, or so
+  /// close to singular that some pivot is mostly rounding errors.
   [[nodiscard]] bool Factorize(const Matrix& H, const Eigen::VectorXd& added = {});
 
-  /// The same with twice the digits, some 20 times slower: for a matrix J^T Omega J that was summed
-  /// up with so many digits the factor is as good as that of an orthogonal factorisation of J. If
-  /// the sum is positive semidefinite there is a factor, too: it holds a variable for each
-  /// direction that is free. Solve gives a zero there, and one of the solutions if there is any.
+  /// The same with twice the digits, some 20 times slower. If H = J^T Omega J was summed up with as
+  /// many digits, the factor is as exact as that of an orthogonal factorisation of J. There is a
+  /// factor for a positive semidefinite sum, too: for each direction that the sum maps to zero, it
+  /// holds one variable. Solve then gives a solution, if there is one, with zeros at these
+  /// variables.
   [[nodiscard]] Definiteness FactorizeExactly(const ExactMatrix& H,
                                               const Eigen::VectorXd& added = {});
 
@@ -45,13 +46,14 @@ class SparseCholesky {
   /// H^-1 * rhs for one or more right-hand sides (columns), after a successful Factorize.
   Eigen::MatrixXd Solve(const Eigen::Ref<const Eigen::MatrixXd>& rhs) const;
 
-  /// The smallest pivot, as a share of the matrix's diagonal entry in its place: at most one over
-  /// the condition number of the matrix when its diagonal is scaled to 1.
+  /// The smallest ratio of a pivot to the matrix's diagonal entry in its place. If the diagonal is
+  /// scaled to 1, the condition number of the matrix is at least one over this.
   double smallest_pivot() const { return smallest_pivot_; }
 
-  /// A bound of how wrong a pivot may be, as a share of it, if the matrix's entries are right to a
-  /// few units in the last place of double: the first-order effect of errors of the diagonal, all
-  /// taken to add up. On long chains it is far too large. Takes as long as Solve.
+  /// A bound on the relative error of the pivots, if the matrix's entries are right to a few units
+  /// in the last place of a double. It adds up the first-order effects of errors of all diagonal
+  /// entries, as if they never cancelled; on long chains it is thousands of times too large. Takes
+  /// as long as Solve.
   double LargestNoise() const;
 
   /// The factor's columns of a supernode, over the rows of its front; the leading dimension is

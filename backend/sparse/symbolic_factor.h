@@ -16,7 +16,7 @@ namespace loopgrid {
 struct SymbolicFactor {
   std::vector<int> order;     ///< order[k]: the column of the matrix that is eliminated k-th
   std::vector<int> position;  ///< its inverse
-  std::size_t entries = 0;    ///< of the factor below the diagonal, without the supernodes' zeros
+  std::size_t entries = 0;    ///< below the factor's diagonal, without the zeros in supernodes
 
   std::vector<int> first_column;       ///< per supernode, and the number of columns at the end
   std::vector<int> parent;             ///< supernode that takes a supernode's update, -1 for a root
@@ -35,8 +35,8 @@ struct SymbolicFactor {
   int PositionInFront(int s, int index) const;
 };
 
-/// Analyses the factor for an order of elimination, which it refines (without more fill) so that
-/// supernodes are contiguous.
+/// Analyses the factor for an order of elimination. Changes the order, without more fill, so that
+/// the columns of each supernode are contiguous.
 SymbolicFactor AnalyzeFactor(std::vector<int> order, std::span<const BlockPlace> places);
 
 }  // namespace loopgrid
