@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <random>
 #include <vector>
 
 #include "backend/solve/optimizer.h"
+#include "tests/support/effort.h"
 #include "tests/support/graphs.h"
 #include "tests/support/manhattan_world.h"
 #include "tests/support/sphere_world.h"
@@ -80,6 +83,7 @@ struct OutlierResult {
   double at_once;
   double graduated;
   double from_truth;
+  double farthest;  ///< of the graduated poses from the optimum of the right constraints
 };
 
 template <typename Pose>
@@ -106,29 +110,48 @@ OutlierResult OptimizeWithOutliers(PoseGraph<Pose> graph, double worse, unsigned
   Optimizer<Pose>().Optimize(&right);
   OptimizerOptions options;
   options.loss = {LossKind::kGemanMcClure, 3.0};
+  PoseGraph<Pose> end;
   const auto error_from = [&](const std::vector<Pose>& poses) {
-    PoseGraph<Pose> start = graph;
-    start.poses = poses;
-    return Optimizer<Pose>(options).Optimize(&start).final_error;
+    end = graph;
+    end.poses = poses;
+    return Optimizer<Pose>(options).Optimize(&end).final_error;
   };
-  OutlierResult result{error_from(graph.poses), 0.0, error_from(right.poses)};
+  OutlierResult result{error_from(graph.poses), 0.0, error_from(right.poses), 0.0};
   options.graduated = true;
   result.graduated = error_from(graph.poses);
+  for (std::size_t i = 0; i < end.poses.size(); ++i) {
+    result.farthest = std::max(result.farthest, Distance(end.poses[i], right.poses[i]));
+  }
   return result;
 }
 
-TEST(RobustOptimizer, GraduatedNonConvexityFindsTheTruthAmongGrossOutliers) {
-  int missed_at_once = 0;  // by the loss as it is: not every start is that bad
-  for (unsigned seed = 1; seed <= 4; ++seed) {
-    for (const OutlierResult& result :
-         {OptimizeWithOutliers(test_support::ManhattanWorld(120, 3, seed), 4.0, seed),
-          OptimizeWithOutliers(test_support::SphereWorld(8, 16, 0.05, seed), 2.0, seed)}) {
-      EXPECT_LE(result.graduated, 1.001 * result.from_truth) << "seed " << seed;
-      EXPECT_LE(result.graduated, result.at_once) << "seed " << seed;
-      if (result.at_once > 1.001 * result.from_truth) ++missed_at_once;
-    }
+// A robot that walks through streets of a metre, with odometry that is wrong by 0.2 m and 0.08 rad
+// at each of them.
+TEST(RobustOptimizer, GraduatedNonConvexityIsRightForEachOf50CitiesWithGrossOutliers) {
+  const unsigned seeds = test_support::Effort(50U, 4U);
+  unsigned missed_at_once = 0;  // by the loss as it is
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const OutlierResult result =
+        OptimizeWithOutliers(test_support::ManhattanWorld(100, 3, seed), 4.0, seed);
+    EXPECT_LE(result.graduated, 1.001 * result.from_truth) << "seed " << seed;
+    EXPECT_LE(result.graduated, result.at_once) << "seed " << seed;
+    EXPECT_LE(result.farthest, 1.0) << "seed " << seed;
+    if (result.at_once > 1.001 * result.from_truth) ++missed_at_once;
   }
-  EXPECT_GE(missed_at_once, 5);
+  EXPECT_GE(missed_at_once, seeds / 2);
+}
+
+TEST(RobustOptimizer, GraduatedNonConvexityIsRightOnSpheresWithGrossOutliers) {
+  const unsigned seeds = test_support::Effort(12U, 2U);
+  unsigned missed_at_once = 0;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const OutlierResult result =
+        OptimizeWithOutliers(test_support::SphereWorld(6, 12, 0.05, seed), 2.0, seed);
+    EXPECT_LE(result.graduated, 1.001 * result.from_truth) << "seed " << seed;
+    EXPECT_LE(result.graduated, result.at_once) << "seed " << seed;
+    if (result.at_once > 1.001 * result.from_truth) ++missed_at_once;
+  }
+  EXPECT_GE(missed_at_once, seeds / 2);
 }
 
 /// Half of a city's closures are wrong.
@@ -156,8 +179,7 @@ TEST(RobustOptimizer, GraduatedNonConvexityTakesFewStepsAndEndsNoHigherThanWitho
     EXPECT_EQ(graduated.initial_error, without.initial_error);
     EXPECT_NEAR(TotalError(graph, {options.loss}), graduated.final_error,
                 1e-12 * graduated.final_error);
-    // Stages at most for widths from 1e4 down to 3, of 3 steps, and two descents to the end.
-    EXPECT_LE(graduated.iterations, 50 * 3 + 2 * options.max_iterations) << "seed " << seed;
+    EXPECT_LE(graduated.iterations, 600) << "seed " << seed;
   }
 }
 
