@@ -113,12 +113,28 @@ Definiteness FactorizeHessian(const PoseGraph<Pose>& graph, const Objective& obj
   return factor->FactorizeExactly(ExactHessian(graph, objective, equations), added);
 }
 
+template <typename Pose>
+void RefineFactor(const PoseGraph<Pose>& graph, const Objective& objective,
+                  const NormalEquations<Pose>& equations, double most_noise,
+                  SparseCholesky<Pose::kDof>* factor) {
+  if (factor->LargestNoise() <= most_noise) return;
+  if (factor->FactorizeExactly(ExactHessian(graph, objective, equations)) ==
+      Definiteness::kDefinite) {
+    return;
+  }
+  // FactorizeExactly takes pivots for zero that its bounds of rounding errors, which may be far too
+  // large, do not tell from zero.
+  static_cast<void>(FactorizeHessian(graph, objective, equations, {}, factor));
+}
+
 #define LOOPGRID_INSTANTIATE(Pose)                                                             \
   template SymmetricBlockMatrix<Pose::kDof, DoubleDouble> ExactHessian(                        \
       const PoseGraph<Pose>&, const Objective&, const NormalEquations<Pose>&);                 \
   template Definiteness FactorizeHessian(const PoseGraph<Pose>&, const Objective&,             \
                                          const NormalEquations<Pose>&, const Eigen::VectorXd&, \
-                                         SparseCholesky<Pose::kDof>*);
+                                         SparseCholesky<Pose::kDof>*);                         \
+  template void RefineFactor(const PoseGraph<Pose>&, const Objective&,                         \
+                             const NormalEquations<Pose>&, double, SparseCholesky<Pose::kDof>*);
 LOOPGRID_INSTANTIATE(SE2)
 LOOPGRID_INSTANTIATE(SE3)
 #undef LOOPGRID_INSTANTIATE

@@ -29,4 +29,12 @@ template <typename Pose>
                                             const Eigen::VectorXd& added,
                                             SparseCholesky<Pose::kDof>* factor);
 
+/// For covariances, after FactorizeHessian without `added` has found the Hessian positive definite:
+/// factorises it again with twice the digits, unless a bound says that rounding errors are at most
+/// this share of each pivot. Steps need no such care, since the next step corrects them.
+template <typename Pose>
+void RefineFactor(const PoseGraph<Pose>& graph, const Objective& objective,
+                  const NormalEquations<Pose>& equations, double most_noise,
+                  SparseCholesky<Pose::kDof>* factor);
+
 }  // namespace loopgrid

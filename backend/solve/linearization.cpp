@@ -24,8 +24,7 @@ constexpr double kFreeCurvature = 1e-26;
 /// 1e-16, then makes steps of a hundredth of the errors at most.
 constexpr double kSingularDamping = 1e-14;
 
-/// A step that is not exact is corrected by the next one. Covariances are not: beyond this share of
-/// a pivot that may be rounding errors, they are computed with twice the digits.
+/// See RefineFactor.
 constexpr double kMostNoise = 1e-2;
 
 /// v^T H v.
@@ -139,13 +138,8 @@ Definiteness Linearization<Pose>::FactorizeForCovariances(const PoseGraph<Pose>&
     has_undamped_factor_ = result == Definiteness::kDefinite;
     if (!has_undamped_factor_) return result;
   }
-  if (!careful || factor_.LargestNoise() <= kMostNoise) return Definiteness::kDefinite;
-  if (factor_.FactorizeExactly(ExactHessian(graph, objective_, equations_)) ==
-      Definiteness::kDefinite) {
-    return Definiteness::kDefinite;
-  }
-  // Its bounds of rounding errors are too large on long chains: there double precision is enough.
-  return FactorizeHessian(graph, objective_, equations_, Eigen::VectorXd(), &factor_);
+  if (careful) RefineFactor(graph, objective_, equations_, kMostNoise, &factor_);
+  return Definiteness::kDefinite;
 }
 
 template <typename Pose>

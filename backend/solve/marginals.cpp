@@ -22,6 +22,9 @@ namespace {
 /// the sixteen digits of a double, beside those that the condition of the Hessian costs the terms.
 constexpr double kMostCancellation = 1e6;
 
+/// See RefineFactor. The bound is some thousand times too large on long chains.
+constexpr double kMostRelativeNoise = 1e-3;
+
 /// Whether variances that are differences of terms of these sizes have kept enough digits.
 template <int kSize>
 bool IsAccurate(const Eigen::Matrix<double, kSize, 1>& variances,
@@ -188,6 +191,7 @@ std::optional<typename Marginals<Pose>::Relative> Marginals<Pose>::WithHeld(int 
   if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
     return std::nullopt;
   }
+  RefineFactor(graph, objective, equations, kMostRelativeNoise, &factor);
   const Marginals held(graph, equations, factor, loss_);
   return Relative{held.covariances_, held.landmark_covariances_};
 }
@@ -221,6 +225,7 @@ std::optional<std::vector<typename Marginals<Pose>::Covariance>> RelativeCovaria
   if (FactorizeHessian(graph, objective, equations, {}, &factor) != Definiteness::kDefinite) {
     return std::nullopt;
   }
+  RefineFactor(graph, objective, equations, kMostRelativeNoise, &factor);
   return Marginals<Pose>(graph, equations, factor, loss).RelativeTo(node).nodes;
 }
 

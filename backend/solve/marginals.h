@@ -57,7 +57,8 @@ class Marginals {
   /// approximation: the errors do not change when all nodes move together, so H has these motions
   /// in its null space, and changing the node that is held is linear. But far from the held node
   /// the difference of two large covariances may be small. Where any of them would lose too many
-  /// digits, the graph is linearised and factorised again with `node` held, for all of them.
+  /// digits, the graph is linearised and factorised again with `node` held, for all of them; with
+  /// twice the digits where double precision might not give variances right to a millionth.
   ///
   /// With several fixed nodes in the component of `node` all of them stay where they are, and
   /// there is no second factorisation.
