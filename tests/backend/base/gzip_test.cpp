@@ -38,11 +38,15 @@ TEST(Gzip, UnpacksToTheSameBytes) {
   }
 }
 
-TEST(Gzip, MakesTextSmallerAndIsTheSameEachTime) {
+TEST(Gzip, MakesTextSmaller) {
   std::string text;
   for (int i = 0; i < 1000; ++i) text += "EDGE_SE2 " + std::to_string(i) + "\n";
   EXPECT_LT(Gzip(text).size(), text.size() / 3);
-  EXPECT_EQ(Gzip(text), Gzip(text));
+}
+
+// Otherwise the same bytes would be packed into other ones a second later (RFC 1952, MTIME).
+TEST(Gzip, PutsNoTimeIntoTheHeader) {
+  EXPECT_EQ(Gzip("some text").substr(4, 4), std::string(4, '\0'));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backend/base/gzip.h"
+#include "tests/support/effort.h"
 #include "tests/support/memory_file.h"
 
 namespace loopgrid {
@@ -104,7 +105,7 @@ TEST(LineReader, PassesOverLinesLongerThanItsBuffer) {
 }
 
 TEST(LineReader, SplitsRandomTextAsThePlainWayDoes) {
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < test_support::Effort(60U, 6U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const std::size_t max_line_length = seed % 3 == 0 ? 20 : 100'000;

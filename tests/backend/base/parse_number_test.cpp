@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/effort.h"
+
 namespace loopgrid {
 namespace {
 
@@ -86,7 +88,7 @@ void ExpectSameBits(const std::string& text) {
 
 TEST(NextDecimal, AgreesWithFromCharsOnAllReadingsOfALaser) {
   char text[32];
-  for (int i = 0; i < 1'000'000; ++i) {
+  for (int i = 0; i < 1'000'000; i += test_support::Effort(1, 97)) {
     std::snprintf(text, sizeof(text), "%.2f", i / 100.0);
     ExpectSameBits(text);
     std::snprintf(text, sizeof(text), "%.3f", i / 1000.0);
@@ -96,12 +98,13 @@ TEST(NextDecimal, AgreesWithFromCharsOnAllReadingsOfALaser) {
 
 TEST(NextDecimal, AgreesWithFromCharsBetweenNeighbouringFloats) {
   char text[64];
-  for (int i = 1; i < 100'001; i += 2) {  // 2^24 + odd: exactly between two floats
+  for (int i = 1; i < 100'001;
+       i += test_support::Effort(2, 194)) {  // 2^24 + odd: exactly between two floats
     std::snprintf(text, sizeof(text), "%d.000", 16'777'216 + i);
     ExpectSameBits(text);
   }
   std::mt19937 random(7);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < test_support::Effort(100'000, 1'000); ++i) {
     const float below = std::ldexp(static_cast<float>(random() % 16'777'216), -(i % 30));
     const float above = std::nextafter(below, std::numeric_limits<float>::max());
     const double middle = 0.5 * (static_cast<double>(below) + static_cast<double>(above));
@@ -116,7 +119,7 @@ TEST(NextDecimal, AgreesWithFromCharsOnNumbersOfAGraph) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0.0, 100.0);
   char text[64];
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < test_support::Effort(200'000, 2'000); ++i) {
     for (const char* format : {"%.6g", "%f", "%.15g", "%.17g", "%.0f"}) {
       std::snprintf(text, sizeof(text), format, normal(random));  // NOLINT: one of these
       ExpectSameBits(text);
@@ -130,7 +133,7 @@ TEST(NextDecimal, AgreesWithFromCharsOnNumbersOfAGraph) {
 TEST(NextDecimal, AgreesWithFromCharsOnRandomText) {
   std::mt19937 random(8);
   const std::string alphabet = "00123456789999..-+e";
-  for (int i = 0; i < 1'000'000; ++i) {
+  for (int i = 0; i < test_support::Effort(1'000'000, 10'000); ++i) {
     std::string text;
     const std::size_t length = 1 + random() % 22;
     for (std::size_t k = 0; k < length; ++k) text += alphabet[random() % alphabet.size()];

@@ -280,6 +280,12 @@ TYPED_TEST(SparseCholeskyTest, HoldsAVariableOfEachFreeDirection) {
   const Eigen::VectorXd x = cholesky.Solve(rhs);
   EXPECT_TRUE((dense * x).isApprox(rhs, 1e-6));
   EXPECT_EQ((x.array() == 0.0).count(), 3);
+  EXPECT_EQ(cholesky.FreeDirections(2).cols(), 0);
+  const Eigen::MatrixXd free = cholesky.FreeDirections(3);
+  ASSERT_EQ(free.cols(), 3);
+  EXPECT_EQ(Eigen::FullPivLU<Eigen::MatrixXd>(free).rank(), 3);
+  EXPECT_LE((J * free).norm(), 1e-9 * J.norm() * free.norm());
+  EXPECT_EQ(cholesky.Solve(rhs), x);  // as before
   H.diagonal(2)(1, 1) -= 1e5;
   EXPECT_EQ(cholesky.FactorizeExactly(Exact(H)), Definiteness::kIndefinite);
 }
