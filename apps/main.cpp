@@ -17,6 +17,7 @@
 #include "apps/plot/plot_arguments.h"
 #include "apps/replay/replay_arguments.h"
 #include "apps/run/run_arguments.h"
+#include "apps/view/view_argument.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
@@ -67,7 +68,7 @@ Program DescribeProgram(Options* options) {
               "Exit status: 0 done, 2 wrong usage, 3 an input cannot be used, 4 an output cannot "
               "be written,\n"
               "128 + n ended by signal n.",
-          .commands = {DescribeRun(&options->run), DescribeOnline(&options->online),
+          .commands = {DescribeRun(&options->run), DescribeOnline(&options->online, DescribeView()),
                        DescribeEval(&options->eval), DescribeOptimize(&options->optimize),
                        DescribePlot(&options->plot), DescribeReplay(&options->replay)}};
 }

@@ -1,5 +1,6 @@
 #include "apps/online/live_outputs.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <filesystem>
@@ -38,7 +39,7 @@ LiveOutputs::LiveOutputs(const OnlineOptions& options, const LineSource* source,
                                              options.view.empty() ? nullptr : &published_)) {
   status_.source = source_->name();
   if (options.view.empty()) return;
-  view_ = std::make_unique<ViewServer>(ParseViewAddress(options.view), &map_, &published_);
+  view_ = options.viewer.start(options.view, &map_, &published_);
 }
 
 void LiveOutputs::Add(const OnlineUpdate& update, bool is_new) {
@@ -90,7 +91,10 @@ void LiveOutputs::Refresh(const Slam& slam) {
 void LiveOutputs::WarnOfScansLeftOut() {
   if (has_warned_ || map_.counters().left_out == 0) return;
   has_warned_ = true;
-  events_->Warning("the live map has no room for some scans: too far out for cells of this size");
+  events_->Warning(fmt::format(
+      "the live map is without scans that are too far out for cells of {:.6g} m; the map "
+      "at the end has larger cells instead, or says which scans it is without",
+      map_.resolution()));
 }
 
 void LiveOutputs::PublishStatus(OnlineMapper* mapper) {

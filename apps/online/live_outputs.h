@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/live/live_map.h"
+#include "apps/live/live_viewer.h"
 #include "apps/live/published_files.h"
 #include "apps/live/refresher.h"
 #include "apps/online/event_writer.h"
@@ -14,7 +15,6 @@
 #include "apps/online/online_status.h"
 #include "apps/online/source/line_queue.h"
 #include "apps/online/source/line_source.h"
-#include "apps/view/view_server.h"
 
 namespace loopgrid {
 
@@ -27,7 +27,7 @@ class LiveOutputs {
               EventWriter* events);
 
   /// Null if there is no page.
-  const ViewServer* view() const { return view_.get(); }
+  const LiveViewer* view() const { return view_.get(); }
 
   /// Takes a scan. `is_new`: it came from the stream, not from the journal.
   void Add(const OnlineUpdate& update, bool is_new);
@@ -54,7 +54,7 @@ class LiveOutputs {
   EventWriter* events_;
   PublishedFiles published_;
   LiveMap map_;
-  std::unique_ptr<ViewServer> view_;
+  std::unique_ptr<LiveViewer> view_;
   std::unique_ptr<Refresher> refresher_;
   OnlineStatus status_;
   std::int64_t refreshed_scans_ = 0;

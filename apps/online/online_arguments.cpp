@@ -16,8 +16,8 @@ namespace {
 constexpr const char* kOnlineFooter =
     "Reads lines of a CARMEN log; without --follow, --listen or --connect from standard input.\n"
     "When they end, or at SIGINT, SIGTERM or SIGHUP, all files of `run` are written to DIR, with\n"
-    "the same bytes that `run` makes of the same lines. A second signal ends the program at once.\n"
-    "Until then DIR has\n"
+    "the same bytes that `run` makes of the same lines. The same signal again within one second\n"
+    "counts as one; any other second signal ends the program at once. Until then DIR has\n"
     "  journal.clf       the lines received so far, a log itself\n"
     "  session.json      the options that the session was begun with\n"
     "  map.png map.pgm map.yaml trajectory.tum graph.g2o\n"
@@ -63,10 +63,8 @@ std::vector<Argument> SessionArguments(OnlineOptions* options) {
 }
 
 std::vector<Argument> LiveArguments(OnlineOptions* options) {
-  return {{.name = "--view",
-           .unit = "[HOST:]PORT",
-           .help = "Serve a page that shows the map [default: none; to this machine only]",
-           .target = &options->view},
+  const LiveViewerOption& viewer = options->viewer;
+  return {{.name = viewer.name, .unit = viewer.unit, .help = viewer.help, .target = &options->view},
           {.name = "--events",
            .unit = "FILE",
            .help = "Write what happens as JSON lines; -: standard output",
@@ -86,7 +84,8 @@ std::vector<Argument> LiveArguments(OnlineOptions* options) {
 
 }  // namespace
 
-Command DescribeOnline(OnlineOptions* options) {
+Command DescribeOnline(OnlineOptions* options, LiveViewerOption viewer) {
+  options->viewer = std::move(viewer);
   Command command{.name = "online",
                   .summary = "Make a map while the robot drives",
                   .footer = kOnlineFooter,

@@ -14,6 +14,7 @@
 
 #include "apps/cli/interrupt_watch.h"
 #include "apps/cli/progress_bar.h"
+#include "apps/live/live_viewer.h"
 #include "apps/net/host_port.h"
 #include "apps/online/live_outputs.h"
 #include "apps/online/online_session.h"
@@ -71,7 +72,7 @@ std::unique_ptr<LineSource> OpenSource(const OnlineOptions& options) {
   return std::make_unique<PipeSource>(STDIN_FILENO, "standard input");
 }
 
-void Introduce(const OnlineOptions& options, const LineSource& source, const ViewServer* view,
+void Introduce(const OnlineOptions& options, const LineSource& source, const LiveViewer* view,
                EventWriter* events) {
   const std::string page = view == nullptr ? "" : view->url();
   if (view != nullptr && !view->is_loopback()) {

@@ -5,14 +5,13 @@
 #include <string>
 
 #include "apps/net/host_port.h"
-#include "apps/view/view_options.h"
 #include "backend/base/error.h"
 
 namespace loopgrid {
 namespace {
 
 /// Checks an address with `parse`. The message of an error names the option.
-void RequireAddress(const char* option, const std::string& address, const auto& parse) {
+void RequireAddress(const std::string& option, const std::string& address, const auto& parse) {
   if (address.empty()) return;
   try {
     parse(address);
@@ -51,7 +50,7 @@ void OnlineOptions::Validate() const {
   }
   RequireAddress("--listen", listen, ParseHostPort);
   RequireAddress("--connect", connect, ParseHostPort);
-  RequireAddress("--view", view, ParseViewAddress);
+  RequireAddress(viewer.name, view, viewer.check);
   run.Validate();
 }
 

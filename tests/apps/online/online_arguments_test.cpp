@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/view_argument.h"
 #include "tests/apps/parse.h"
 
 namespace loopgrid {
@@ -13,7 +14,7 @@ namespace {
 
 OnlineOptions ParseOnline(const std::vector<const char*>& words) {
   OnlineOptions online;
-  test_support::ParseArguments(DescribeOnline(&online), words);
+  test_support::ParseArguments(DescribeOnline(&online, DescribeView()), words);
   return online;
 }
 

@@ -7,18 +7,6 @@
 namespace loopgrid {
 namespace {
 
-TEST(ViewServerOptions, AreReadFromAnAddress) {
-  EXPECT_EQ(ParseViewAddress("8080").host, "127.0.0.1");
-  EXPECT_EQ(ParseViewAddress("8080").port, 8080);
-  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").host, "0.0.0.0");
-  EXPECT_EQ(ParseViewAddress("0.0.0.0:80").port, 80);
-  EXPECT_EQ(ParseViewAddress("[::1]:8080").host, "::1");
-  for (const char* nonsense : {"", "x", "70000", "-1", "localhost", "localhost:", ":80", "1.5",
-                               "host:port", "host:70000"}) {
-    EXPECT_THROW(ParseViewAddress(nonsense), Error) << nonsense;
-  }
-}
-
 TEST(ViewServerOptions, AreRefusedOutOfRange) {
   const auto is_refused = [](auto change) {
     ViewServerOptions options;
