@@ -52,10 +52,10 @@ bool IsRefused(ClosureOutcome outcome) {
   return outcome != ClosureOutcome::kPending && outcome != ClosureOutcome::kAccepted;
 }
 
-std::string ClosureJson(std::int64_t id, const Closure& record) {
+std::string ClosureJson(const Closure& closure) {
   return ObjectText([&](JsonWriter* json) {
-    json->Field("id", id);
-    AddClosurePageFields(record, json);
+    json->Field("id", closure.id);
+    AddClosurePageFields(closure, json);
   });
 }
 
@@ -149,24 +149,19 @@ void ViewState::TakeNodes(const NodeStates& states) {
 }
 
 void ViewState::TakeClosure(const Closure& record) {
-  const NodePair pair(record.from, record.to);
-  const auto [place, is_new] = closures_.try_emplace(pair);
-  ShownClosure& closure = place->second;
-  if (is_new) {
-    closure.id = next_closure_++;
-  } else {
-    --outcomes_[closure.record.outcome];
-  }
-  const bool was_refused = !is_new && IsRefused(closure.record.outcome);
-  closure.record = record;
+  const auto [place, is_new] = closures_.try_emplace(record.id);
+  Closure& closure = place->second;
+  const bool was_refused = !is_new && IsRefused(closure.outcome);
+  if (!is_new) --outcomes_[closure.outcome];
+  closure = record;
   ++outcomes_[record.outcome];
-  changed_closures_.insert(pair);
+  changed_closures_.insert(record.id);
   if (!IsRefused(record.outcome) || was_refused) return;
-  refused_.push_back(pair);
+  refused_.push_back(record.id);
   if (refused_.size() <= kMaxRefused) return;
   const auto oldest = closures_.find(refused_.front());
   refused_.pop_front();
-  if (oldest != closures_.end() && IsRefused(oldest->second.record.outcome)) {
+  if (oldest != closures_.end() && IsRefused(oldest->second.outcome)) {
     changed_closures_.erase(oldest->first);
     closures_.erase(oldest);
   }
@@ -222,10 +217,7 @@ std::string ViewState::TakeChanges(const std::vector<TileVersion>& tiles, bool w
   }
   if (!changed_closures_.empty()) {
     std::vector<std::string> changed;
-    for (const NodePair& pair : changed_closures_) {
-      const ShownClosure& closure = closures_.at(pair);
-      changed.push_back(ClosureJson(closure.id, closure.record));
-    }
+    for (const ClosureId id : changed_closures_) changed.push_back(ClosureJson(closures_.at(id)));
     text += ServerSentEvent("closures", ObjectWithArray("closures", changed));
   }
   if (!poses_.empty() || !changed_closures_.empty())
@@ -251,9 +243,7 @@ std::string ViewState::Snapshot(const std::vector<TileVersion>& tiles) const {
     json->Key("pose").Raw(last_pose_.empty() ? "null" : last_pose_);
     AddNodes(0, json);
     json->Key("closures").BeginArray();
-    for (const auto& [pair, closure] : closures_) {
-      json->Raw(ClosureJson(closure.id, closure.record));
-    }
+    for (const auto& [id, closure] : closures_) json->Raw(ClosureJson(closure));
     json->EndArray();
     json->Key("counters").Raw(CountersJson()).Key("tiles").Raw(TilesJson(tiles));
   });

@@ -7,12 +7,12 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/live/map_tiles.h"
 #include "apps/live/online_update.h"
 #include "apps/output/json_writer.h"
+#include "frontend/closing/closure.h"
 
 namespace loopgrid {
 
@@ -47,12 +47,6 @@ class ViewState {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // in the node's own frame
     bool linked = false;                                   // reached from the one before
   };
-  struct ShownClosure {
-    std::int64_t id = 0;  // in order of appearance
-    Closure record;
-  };
-  using NodePair = std::pair<int, int>;
-
   static std::string PoseJson(const OnlineUpdate& update);
   void TakeScan(const OnlineUpdate& update);
   double StepTo(const OnlineUpdate& update) const;
@@ -75,10 +69,9 @@ class ViewState {
   std::size_t nodes_told_ = 0;
   bool nodes_moved_ = false;
 
-  std::map<NodePair, ShownClosure> closures_;
-  std::set<NodePair> changed_closures_;  // not told yet
-  std::deque<NodePair> refused_;         // oldest first
-  std::int64_t next_closure_ = 0;
+  std::map<ClosureId, Closure> closures_;
+  std::set<ClosureId> changed_closures_;             // not told yet
+  std::deque<ClosureId> refused_;                    // oldest first
   std::map<ClosureOutcome, std::int64_t> outcomes_;  // of all closures ever tried
 
   std::int64_t scans_ = 0;

@@ -116,6 +116,7 @@ class BrowserTest : public testing::Test {
 
   static OnlineUpdate WithClosure(OnlineUpdate update, int from, int to, ClosureOutcome outcome) {
     Closure record;
+    record.id = to;  // one closure a node
     record.from = from;
     record.to = to;
     record.outcome = outcome;

@@ -48,9 +48,10 @@ std::vector<json> Named(const std::string& name, const std::string& text) {
 
 json SnapshotOf(const ViewState& state) { return Named("state", state.Snapshot({})).at(0); }
 
-OnlineUpdate UpdateWithClosure(int from, int to, ClosureOutcome outcome) {
+OnlineUpdate UpdateWithClosure(ClosureId id, int from, int to, ClosureOutcome outcome) {
   OnlineUpdate update;
   Closure record;
+  record.id = id;
   record.from = from;
   record.to = to;
   record.outcome = outcome;
@@ -147,8 +148,8 @@ TEST(ViewState, TurnsCovariancesIntoTheMapFrame) {
 
 TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
   ViewState state("a", 0.05);
-  state.Apply(UpdateWithClosure(3, 40, ClosureOutcome::kPending));
-  state.Apply(UpdateWithClosure(4, 41, ClosureOutcome::kLowScore));
+  state.Apply(UpdateWithClosure(0, 3, 40, ClosureOutcome::kPending));
+  state.Apply(UpdateWithClosure(1, 4, 41, ClosureOutcome::kLowScore));
   json closures = Named("closures", state.TakeChanges({}, true)).at(0)["closures"];
   ASSERT_EQ(closures.size(), 2u);
   EXPECT_EQ(closures[0]["outcome"], "pending");
@@ -157,7 +158,7 @@ TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
   EXPECT_EQ(closures[1]["reason"], "the scans do not fit well enough");
   const int id = closures[0]["id"];
 
-  state.Apply(UpdateWithClosure(3, 40, ClosureOutcome::kAccepted));
+  state.Apply(UpdateWithClosure(0, 3, 40, ClosureOutcome::kAccepted));
   closures = Named("closures", state.TakeChanges({}, true)).at(0)["closures"];
   ASSERT_EQ(closures.size(), 1u);
   EXPECT_EQ(closures[0]["id"], id) << "still the same closure";
@@ -168,11 +169,23 @@ TEST(ViewState, SaysWhatBecameOfClosuresAndWhy) {
   EXPECT_EQ(counters["pending"], 0);
 }
 
+TEST(ViewState, TwoClosuresBetweenTheSameNodesAreTwo) {
+  ViewState state("a", 0.05);
+  state.Apply(UpdateWithClosure(7, 3, 40, ClosureOutcome::kLowScore));
+  state.Apply(UpdateWithClosure(9, 3, 40, ClosureOutcome::kAccepted));
+  const json snapshot = SnapshotOf(state);
+  ASSERT_EQ(snapshot["closures"].size(), 2u);
+  EXPECT_EQ(snapshot["closures"][0]["id"], 7);
+  EXPECT_EQ(snapshot["closures"][1]["id"], 9);
+  EXPECT_EQ(snapshot["counters"]["refused"], 1);
+  EXPECT_EQ(snapshot["counters"]["accepted"], 1);
+}
+
 TEST(ViewState, NeverForgetsAcceptedClosuresButOldRefusedOnes) {
   ViewState state("a", 0.05);
   for (int i = 0; i < 1000; ++i) {
     state.Apply(UpdateWithClosure(
-        0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
+        i, 0, i, i % 2 == 0 ? ClosureOutcome::kAccepted : ClosureOutcome::kAmbiguous));
   }
   const json snapshot = SnapshotOf(state);
   EXPECT_EQ(snapshot["closures"].size(), 700u);
@@ -196,7 +209,7 @@ TEST(ViewState, TellsAtMostTheNewestPosesOfABatch) {
 TEST(ViewState, StaysJsonWhateverTheNumbers) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  OnlineUpdate update = UpdateWithClosure(1, 2, ClosureOutcome::kRejected);
+  OnlineUpdate update = UpdateWithClosure(0, 1, 2, ClosureOutcome::kRejected);
   update.closures[0].score = nan;
   update.closures[0].distance_sigmas = infinity;
   update.tracked.covariance.setConstant(nan);
