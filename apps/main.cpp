@@ -73,15 +73,21 @@ Program DescribeProgram(Options* options) {
                        DescribePlot(&options->plot), DescribeReplay(&options->replay)}};
 }
 
-void RunProgram(int argc, char** argv) {
+/// Returns the exit status. Throws Error.
+int RunProgram(int argc, char** argv) {
   Options options;
   const Program program = DescribeProgram(&options);
   const Invocation invocation = ParseCommandLine(program, argc, argv);
+  if (invocation.lacks_command) {
+    std::fputs(invocation.answer.c_str(), stderr);
+    return ExitStatus(ErrorCode::kUsage);
+  }
   if (invocation.command == nullptr) {
     PrintToStandardOutput(invocation.answer);
   } else {
     Execute(*invocation.command);
   }
+  return 0;
 }
 
 /// Prints the message as one line. An error of printing is ignored: there is no place to report it.
@@ -98,8 +104,7 @@ int Main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
-    RunProgram(argc, argv);
-    return 0;
+    return RunProgram(argc, argv);
   } catch (const Error& error) {
     return Complain(error.what(), ExitStatus(error.code()));
   } catch (const std::bad_alloc&) {

@@ -93,6 +93,8 @@ Invocation ParseCommandLine(const Program& program, int argc, const char* const*
     return {.answer = std::string(version.what()) + '\n'};
   } catch (const CLI::ParseError& error) {
     const Command* command = CommandIn(app, program);
+    if (command == nullptr && words.size() <= 1)
+      return {.answer = app.help(), .lacks_command = true};
     const std::string help = command == nullptr ? program.name : program.name + ' ' + command->name;
     throw Error(ErrorCode::kUsage, fmt::format("{} (see {} --help)", error.what(), help));
   }

@@ -309,8 +309,17 @@ TEST_F(ProgramTest, OptionOutOfRangeIsAUsageErrorWithValueAndBound) {
   ExpectRefusal({"run", log_, "--out", out_, "--node-angle", "1e9"}, 2, "--node-angle is ");
 }
 
+TEST_F(ProgramTest, WithoutArgumentsItPrintsTheCommandsAsAUsageError) {
+  const ProgramResult result = RunProgram({});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.output, "");
+  EXPECT_EQ(result.errors, RunProgram({"--help"}).output);
+  for (const char* command : {"run", "online", "eval", "optimize", "plot", "replay"}) {
+    EXPECT_THAT(result.errors, ::testing::HasSubstr(std::string("\n  ") + command + ' '));
+  }
+}
+
 TEST_F(ProgramTest, ArgumentsThatMakeNoSenseAreAUsageError) {
-  ExpectRefusal({}, 2, "");
   ExpectRefusal({"fly"}, 2, "there is no command 'fly' (see loopgrid --help)");
   ExpectRefusal({"optimise"}, 2, "did you mean optimize?");
   ExpectRefusal({"run"}, 2, "LOG");

@@ -141,8 +141,16 @@ TEST_F(CommandLineTest, VersionIsOneLine) {
   EXPECT_EQ(invocation.answer, "paint 1.2.3\n");
 }
 
+TEST_F(CommandLineTest, WithoutAnyWordTheAnswerIsTheHelp) {
+  const Invocation invocation = ParseWords(program_, {});
+  EXPECT_EQ(invocation.command, nullptr);
+  EXPECT_TRUE(invocation.lacks_command);
+  EXPECT_EQ(invocation.answer, ParseWords(program_, {"--help"}).answer);
+  EXPECT_FALSE(ParseWords(program_, {"--help"}).lacks_command);
+}
+
 TEST_F(CommandLineTest, WhatMakesNoSenseIsRefusedAndPointsToTheHelpOfItsCommand) {
-  EXPECT_THAT(UsageErrorOf(program_, {}), HasSubstr("(see paint --help)"));
+  EXPECT_THAT(UsageErrorOf(program_, {"--"}), HasSubstr("(see paint --help)"));
   const auto expect = [this](const std::vector<const char*>& words, const char* problem) {
     EXPECT_THAT(UsageErrorOf(program_, words),
                 AllOf(HasSubstr(problem), HasSubstr("(see paint wall --help)")));
