@@ -31,6 +31,7 @@
 #include "backend/solve/marginals.h"
 #include "backend/solve/normal_equations.h"
 #include "mapping/graph_drawing.h"
+#include "mapping/pen.h"
 
 namespace loopgrid {
 namespace {
@@ -275,6 +276,7 @@ void OptimizeCommand(const OptimizeOptions& options) {
   OutputFiles outputs(WantedOutputs(options));
   // Made before the threads of the optimiser, and before any file is opened: see InterruptWatch.
   const InterruptWatch watch([&outputs] { outputs.Discard(); });
+  if (!options.picture.empty()) DrawingPen();  // if pictures cannot be drawn, fail now
   ProgressBar bar(options.quiet);
   OptimizeReport report;
   report.options = options;

@@ -1,5 +1,6 @@
 #include "apps/modules/module.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 
 #include "tests/apps/program.h"
 #include "tests/apps/refusal.h"
+#include "tests/apps/small_log.h"
 #include "tests/support/recordings.h"
 #include "tests/support/temporary_directory.h"
 
@@ -37,8 +39,13 @@ class LonelyProgram {
  public:
   LonelyProgram() { fs::copy_file(LOOPGRID_PROGRAM, folder_.File("loopgrid")); }
 
-  ProgramResult Run(const std::vector<std::string>& arguments) const {
-    return RunProgram(arguments, Instead(arguments));
+  /// `input` is a file for its standard input.
+  ProgramResult Run(const std::vector<std::string>& arguments,
+                    const std::string& input = "/dev/null") const {
+    return RunProgram(arguments, [this, arguments, input] {
+      dup2(open(input.c_str(), O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+      Instead(arguments)();
+    });
   }
 
   void ExpectRefusal(const TemporaryDirectory& folder, const std::vector<std::string>& arguments,
@@ -99,6 +106,42 @@ TEST(Modules, AreNotNeededUntilTheirPartIs) {
   program.ExpectRefusal(folder, {"run", kRawlog, "--out", folder.File("out")}, 3,
                         "one_loop_only.rawlog: cannot load loopgrid-rawlog.so, which reads MRPT "
                         "rawlogs: ");
+}
+
+TEST(Modules, ARunWithoutTheDrawingModuleLeavesThePicturesOutWithANote) {
+  const LonelyProgram program;
+  const TemporaryDirectory folder;
+  const std::string log = folder.Write("room.clf", test_support::SmallLog(20));
+  for (const std::string command : {"run", "online"}) {
+    SCOPED_TRACE(command);
+    const std::string out = folder.File(command);
+    std::vector<std::string> arguments = {command, "--out", out, "--quiet"};
+    if (command == "run") arguments.push_back(log);
+    const ProgramResult result = program.Run(arguments, log);
+    EXPECT_EQ(result.status, 0) << result.errors;
+    for (const char* name : {"graph.png", "uncertainty.png"}) {
+      const std::string note =
+          std::string(name) +
+          " is left out: cannot load loopgrid-drawing.so, which draws the pictures";
+      EXPECT_THAT(result.errors, HasSubstr("note: " + note));
+      EXPECT_THAT(test_support::ReadFile(out + "/report.json"), HasSubstr(note));
+      EXPECT_FALSE(fs::exists(out + "/" + name)) << name;
+    }
+    for (const char* name : {"trajectory.tum", "graph.g2o", "corrected.clf", "closures.csv",
+                             "map.png", "map.pgm", "map.yaml"}) {
+      EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+    }
+  }
+}
+
+TEST(Modules, AnOptimisationWithAPictureIsRefusedBeforeItReadsTheGraphIfNoneCanBeDrawn) {
+  const LonelyProgram program;
+  const TemporaryDirectory folder;
+  // The graph is not there, but that is not what is reported.
+  program.ExpectRefusal(folder,
+                        {"optimize", folder.File("none.g2o"), "--out", folder.File("out.g2o"),
+                         "--picture", folder.File("graph.png")},
+                        4, "cannot load loopgrid-drawing.so, which draws the pictures: ");
 }
 
 TEST(Modules, BelongToTheProgramWhereItWasBuilt) {
