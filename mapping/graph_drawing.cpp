@@ -12,15 +12,13 @@
 #include "backend/base/error.h"
 #include "backend/base/index.h"
 #include "mapping/canvas.h"
+#include "mapping/color.h"
+#include "mapping/graph_colors.h"
 #include "mapping/map_view.h"
 #include "mapping/picture_layout.h"
 
 namespace loopgrid {
 namespace {
-
-constexpr Color kSequentialColor{30, 100, 190};
-constexpr Color kClosureColor{225, 75, 35};
-constexpr Color kLandmarkColor{20, 140, 60};
 
 constexpr double kLandmarkRadius = 4.0;  // pixels
 constexpr double kBorder = 0.008;        // free space around the graph, share of its larger side

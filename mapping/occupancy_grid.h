@@ -9,15 +9,16 @@
 #include <vector>
 
 #include "backend/geometry/se2.h"
+#include "mapping/log_odds.h"
 #include "mapping/ray_walk.h"
 
 namespace loopgrid {
 
 struct OccupancyGridOptions {
   double resolution = 0.05;              ///< side of a cell, metres
-  double hit_log_odds = 0.85;            ///< added where a beam of a scan ends: p = 0.7
-  double miss_log_odds = -0.4;           ///< added where beams only pass: p = 0.4
-  double max_log_odds = 100.0;           ///< evidence stops growing here, in both directions
+  double hit_log_odds = kHitLogOdds;     ///< added where a beam of a scan ends
+  double miss_log_odds = kMissLogOdds;   ///< added where beams only pass
+  double max_log_odds = kMaxLogOdds;     ///< evidence stops growing here, in both directions
   double no_return_range = 3.0;          ///< a beam without a return clears up to here, metres
   std::int64_t max_cells = 200'000'000;  ///< 4 bytes each; a larger map is refused
 
