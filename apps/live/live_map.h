@@ -25,6 +25,11 @@ struct LiveMapOptions {
 /// nodes have moved. Memory: 4 bytes for each cell of the grid (8 while it redraws; at most
 /// `grid.max_cells` cells), 1.4 bytes for each cell of the tiles, and about 100 bytes for each scan
 /// without its points, which are shared. All methods may be called from any thread.
+///
+/// The cells keep their size, because viewers have the tiles. So there is one rule at any time: a
+/// scan for which the grid would need more than `grid.max_cells` cells is left out and counted; the
+/// next redraw tries it again. RenderFittedMap(), which draws the map at the end, has all scans at
+/// once and makes the cells larger instead.
 class LiveMap {
  public:
   /// Throws Error (kUsage) if the options are not valid.
