@@ -12,7 +12,7 @@ void NormalOptions::Validate() const {
   RequireBetween("max_thickness", max_thickness, 0.0, 100.0);
 }
 
-void SensorModelOptions::Validate() const {
+void NoReturnOptions::Validate() const {
   normals.Validate();
   RequireBetween("min_range", min_range, 0.0, 100.0);
   RequireBetween("max_range", max_range, 0.1, 1000.0);

@@ -24,7 +24,7 @@ struct NormalOptions {
 /// The no-return rule: which readings are hits, and which mean that the beam met nothing. The
 /// no-return value of a laser is found as a heap in the histogram of all readings so far: its two
 /// topmost bins, if they have enough readings and many more than the bins below them.
-struct SensorModelOptions {
+struct NoReturnOptions {
   double min_range = 0.05;      ///< shorter readings mean "error", metres
   double max_range = 40.0;      ///< longer readings are too rare to help, metres
   double bin_width = 0.5;       ///< of the histogram of readings, metres

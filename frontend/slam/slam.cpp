@@ -12,7 +12,7 @@
 #include "backend/base/stopwatch.h"
 #include "backend/solve/normal_equations.h"
 #include "frontend/closing/node_queue.h"
-#include "frontend/matching/sensor_model.h"
+#include "frontend/matching/no_return_rule.h"
 #include "frontend/slam/robot_pose.h"
 #include "frontend/slam/standstill.h"
 #include "frontend/slam/tracking_graph.h"
@@ -36,7 +36,7 @@ class Slam::Impl {
  public:
   explicit Impl(const SlamOptions& options)
       : options_((options.Validate(), options)),
-        sensor_(options.sensor),
+        no_return_(options.no_return),
         tracker_(options.tracker),
         queue_(options.threads > 1, options.closing),
         graph_(options.update_lag),
@@ -118,11 +118,12 @@ class Slam::Impl {
     const SE2 motion = scans_.size() == 0
                            ? SE2()
                            : scans_.back().T_odom_robot.Inverse() * observation.T_odom_robot;
-    scans_.Add({.timestamp = observation.timestamp,
-                .T_odom_robot = observation.T_odom_robot,
-                .T_robot_laser = observation.scan.T_robot_laser,
-                .place = {},
-                .points = std::make_shared<const PointScan>(sensor_.Interpret(observation.scan))});
+    scans_.Add(
+        {.timestamp = observation.timestamp,
+         .T_odom_robot = observation.T_odom_robot,
+         .T_robot_laser = observation.scan.T_robot_laser,
+         .place = {},
+         .points = std::make_shared<const PointScan>(no_return_.Interpret(observation.scan))});
     ++statistics_.scans;
     return motion;
   }
@@ -266,7 +267,7 @@ class Slam::Impl {
   }
 
   SlamOptions options_;
-  SensorModel sensor_;
+  NoReturnRule no_return_;
   Tracker tracker_;
   NodeQueue queue_;
   TrackingGraph graph_;

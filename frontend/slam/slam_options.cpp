@@ -22,7 +22,7 @@ void SlamOptions::Validate() const {
   RequireBetween("unmatched_factor", unmatched_factor, 1.0, 1e6);
   RequireBetween("update_lag", update_lag, 0, 1000000);
   RequireBetween("threads", threads, 1, 1024);
-  sensor.Validate();
+  no_return.Validate();
   tracker.Validate();
   known_space.Validate();
   closing.Validate();

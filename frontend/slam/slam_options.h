@@ -41,7 +41,7 @@ struct SlamOptions {
   int update_lag = 5;  ///< the changes that a node causes are applied this many steps later
   int threads = 2;     ///< 1: loops are closed in the calling thread; the result is the same
 
-  SensorModelOptions sensor{};
+  NoReturnOptions no_return{};
   TrackerOptions tracker{};
   KnownSpaceOptions known_space{};
   ClosingOptions closing{};

@@ -15,7 +15,7 @@ inline constexpr int kMaxReadings = 1 << 14;
 inline constexpr float kFarthestReading = 1e4F;
 
 /// One sweep of a planar laser as the log has it. There is at least one range. All ranges are
-/// finite and not negative. Some of them may stand for "no return"; SensorModel finds out which.
+/// finite and not negative. Some of them may stand for "no return"; NoReturnRule finds out which.
 struct LaserScan {
   SE2 T_robot_laser;          ///< where the laser sits on the robot
   double first_angle = 0.0;   ///< of ranges[0] in the laser frame, radians

@@ -58,8 +58,8 @@ TEST(SlamOptions, LooksIntoTheOptionsOfEveryComponent) {
   const double bad = -1.0;
   const auto refused = [&](auto field) { return RefusalOf(WithOption(field, bad)); };
   using O = SlamOptions;
-  EXPECT_NE(refused([](O* o) { return &o->sensor.max_range; }), "");
-  EXPECT_NE(refused([](O* o) { return &o->sensor.normals.max_gap; }), "");
+  EXPECT_NE(refused([](O* o) { return &o->no_return.max_range; }), "");
+  EXPECT_NE(refused([](O* o) { return &o->no_return.normals.max_gap; }), "");
   EXPECT_NE(refused([](O* o) { return &o->tracker.min_score; }), "");
   EXPECT_NE(refused([](O* o) { return &o->tracker.odometry.translation_floor; }), "");
   EXPECT_NE(refused([](O* o) { return &o->tracker.refiner.range_sigma; }), "");

@@ -1,4 +1,4 @@
-#include "frontend/matching/sensor_model.h"
+#include "frontend/matching/no_return_rule.h"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST_P(NoReturnValue, NeverBecomesAHitAndTheRoomsWallsAllDo) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     PortableRandom random(seed);
-    SensorModel sensor;
+    NoReturnRule sensor;
     for (int k = 0; k < 12; ++k) {
       // The first scan already: 20 of 180.
       const int missing = k == 0 ? 20 : static_cast<int>(random.Uniform(0.0, 100.0));
@@ -80,11 +80,11 @@ INSTANTIATE_TEST_SUITE_P(
                       NoReturn{"Clamped", {kFarthestReading}}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(SensorModel, LearnsTheEightMetresOfAnLms200InMillimetreMode) {
+TEST(NoReturnRule, LearnsTheEightMetresOfAnLms200InMillimetreMode) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     PortableRandom random(seed);
-    SensorModel sensor;
+    NoReturnRule sensor;
     for (int k = 0; k < 10; ++k) {
       // In a room of 5 m; beams that go farther do not return.
       LaserScan scan = RoomScan({8.191F}, 40, &random);
@@ -96,11 +96,11 @@ TEST(SensorModel, LearnsTheEightMetresOfAnLms200InMillimetreMode) {
   }
 }
 
-TEST(SensorModel, TakesTheLogsMaximumRangeWhereItIsLower) {
+TEST(NoReturnRule, TakesTheLogsMaximumRangeWhereItIsLower) {
   PortableRandom random(3);
   LaserScan scan = RoomScan({5.5F}, 3, &random);  // too few to be learned
   scan.max_range = 5.5;
-  SensorModel sensor;
+  NoReturnRule sensor;
   const PointScan points = sensor.Interpret(scan);
   EXPECT_EQ(sensor.usable_range(), 5.5);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -109,14 +109,14 @@ TEST(SensorModel, TakesTheLogsMaximumRangeWhereItIsLower) {
   EXPECT_EQ(points.size() + points.no_returns.size(), 180U);
 }
 
-TEST(SensorModel, IsNotMisledByALogThatStatesTooLargeARange) {
+TEST(NoReturnRule, IsNotMisledByALogThatStatesTooLargeARange) {
   PortableRandom random(4);
   LaserScan scan = RoomScan({32.77F}, 30, &random);
   scan.max_range = 50.0;  // many logs state this value, for all lasers
-  EXPECT_LT(Farthest(SensorModel().Interpret(scan)), 12.0F);
+  EXPECT_LT(Farthest(NoReturnRule().Interpret(scan)), 12.0F);
 }
 
-TEST(SensorModel, KeepsTheWallsOfRoomsOfAnySizeOrShape) {
+TEST(NoReturnRule, KeepsTheWallsOfRoomsOfAnySizeOrShape) {
   // All readings of the first scan are nearly equal. They must not be taken for no-returns.
   for (double half = 0.4; half < 9.0; half += 0.1) {
     SCOPED_TRACE(half);
@@ -125,19 +125,19 @@ TEST(SensorModel, KeepsTheWallsOfRoomsOfAnySizeOrShape) {
     for (double x : {0.0, 0.3 * half}) {
       PortableRandom random(7);
       const LaserScan scan = SimulateScan(square, SE2(x, 0.0, 0.0), {}, &random);
-      SensorModel sensor;
+      NoReturnRule sensor;
       EXPECT_EQ(sensor.Interpret(scan).size(), 180U);
     }
   }
 }
 
-TEST(SensorModel, KeepsTheEndOfALongCorridorOnceTheRobotHasMovedAMetre) {
+TEST(NoReturnRule, KeepsTheEndOfALongCorridorOnceTheRobotHasMovedAMetre) {
   World corridor;
   corridor.AddBox({15.0, 0.0}, {36.0, 2.4});
   PortableRandom random(8);
   SimulatedLaser laser;
   laser.usable_range = 79.0;
-  SensorModel sensor;
+  NoReturnRule sensor;
   for (int k = 0; k < 10; ++k) {
     const LaserScan scan = SimulateScan(corridor, SE2(0.2 * k, 0.0, 0.01 * k), laser, &random);
     // From one place alone, the end of the corridor makes a heap like that of a no-return value.
@@ -151,19 +151,19 @@ TEST(SensorModel, KeepsTheEndOfALongCorridorOnceTheRobotHasMovedAMetre) {
   EXPECT_EQ(sensor.usable_range(), 40.0);
 }
 
-TEST(SensorModel, SaysTheSameWhateverComesLater) {
+TEST(NoReturnRule, SaysTheSameWhateverComesLater) {
   const test_support::SimulatedRun run =
       test_support::Simulate(test_support::OfficeWorld(),
                              std::vector<Eigen::Vector2d>{{7.0, 7.0}, {9.0, 7.0}, {9.0, 3.5}});
   std::vector<std::size_t> hits;
   std::vector<double> ranges;
-  SensorModel whole;
+  NoReturnRule whole;
   for (const Observation& observation : run.observations) {
     hits.push_back(whole.Interpret(observation.scan).size());
     ranges.push_back(whole.usable_range());
   }
   for (std::size_t end : {std::size_t{1}, run.observations.size() / 2}) {
-    SensorModel prefix;
+    NoReturnRule prefix;
     PortableRandom random(9);
     for (std::size_t i = 0; i < end; ++i) {
       EXPECT_EQ(prefix.Interpret(run.observations[i].scan).size(), hits[i]);
@@ -173,9 +173,9 @@ TEST(SensorModel, SaysTheSameWhateverComesLater) {
   }
 }
 
-TEST(SensorModel, TakesScansOfAnotherNumberOfBeamsInBetween) {
+TEST(NoReturnRule, TakesScansOfAnotherNumberOfBeamsInBetween) {
   PortableRandom random(10);
-  SensorModel sensor;
+  NoReturnRule sensor;
   for (int beams : {180, 361, 1, 90, 1081, 180}) {
     const LaserScan scan = RoomScan({81.83F}, beams / 4, &random, beams);
     const PointScan points = sensor.Interpret(scan);
@@ -185,11 +185,11 @@ TEST(SensorModel, TakesScansOfAnotherNumberOfBeamsInBetween) {
   }
 }
 
-TEST(SensorModel, GoesByItsOptions) {
+TEST(NoReturnRule, GoesByItsOptions) {
   PortableRandom random(12);
   const LaserScan scan = RoomScan({81.83F}, 20, &random);
-  const SensorModelOptions options{.min_range = 1.5, .max_range = 3.0};
-  SensorModel sensor(options);
+  const NoReturnOptions options{.min_range = 1.5, .max_range = 3.0};
+  NoReturnRule sensor(options);
   EXPECT_EQ(sensor.usable_range(), 3.0);
   const PointScan points = sensor.Interpret(scan);
   const auto between = [&](float low, float high) {
@@ -201,19 +201,19 @@ TEST(SensorModel, GoesByItsOptions) {
   EXPECT_GT(std::ssize(points.hits), 0);
 }
 
-TEST(SensorModel, TakesErrorValuesForNothing) {
+TEST(NoReturnRule, TakesErrorValuesForNothing) {
   PortableRandom random(11);
-  const PointScan points = SensorModel().Interpret(RoomScan({0.0F, 0.01F, 0.02F}, 60, &random));
+  const PointScan points = NoReturnRule().Interpret(RoomScan({0.0F, 0.01F, 0.02F}, 60, &random));
   EXPECT_EQ(points.size(), 120U);
   EXPECT_TRUE(points.no_returns.empty());
 }
 
-TEST(SensorModel, BearsScansWithoutAnyReturn) {
+TEST(NoReturnRule, BearsScansWithoutAnyReturn) {
   LaserScan scan;
   scan.angle_step = 0.01;
   for (float value : {0.0F, 81.83F, kFarthestReading}) {
     scan.ranges.assign(181, value);
-    SensorModel sensor;
+    NoReturnRule sensor;
     for (int k = 0; k < 3; ++k) EXPECT_EQ(sensor.Interpret(scan).size(), 0U) << value;
   }
 }

@@ -9,9 +9,9 @@ namespace loopgrid {
 
 /// Finds out, from the scans so far, from which range on a reading means "no return". So the user
 /// need not state it. How a scan is interpreted depends only on it and on earlier scans.
-class SensorModel {
+class NoReturnRule {
  public:
-  explicit SensorModel(const SensorModelOptions& options = {})
+  explicit NoReturnRule(const NoReturnOptions& options = {})
       : options_(options), usable_range_(options.max_range) {}
 
   /// Adds the readings of `scan` to the histogram, then makes points of the scan.
@@ -23,7 +23,7 @@ class SensorModel {
  private:
   void Learn(const LaserScan& scan);
 
-  SensorModelOptions options_;
+  NoReturnOptions options_;
   std::vector<int> histogram_;  ///< readings in each bin
   double usable_range_;
 };

@@ -1,4 +1,4 @@
-#include "frontend/matching/sensor_model.h"
+#include "frontend/matching/no_return_rule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ constexpr double kMaxReading = 1000.0;  // metres; longer readings go into the l
 
 }  // namespace
 
-void SensorModel::Learn(const LaserScan& scan) {
+void NoReturnRule::Learn(const LaserScan& scan) {
   for (float range : scan.ranges) {
     if (!std::isfinite(range) || range < 0.0F) continue;
     const double clamped = std::min(static_cast<double>(range), kMaxReading);
@@ -33,7 +33,7 @@ void SensorModel::Learn(const LaserScan& scan) {
   usable_range_ = std::min(limit, options_.max_range);
 }
 
-PointScan SensorModel::Interpret(const LaserScan& scan) {
+PointScan NoReturnRule::Interpret(const LaserScan& scan) {
   Learn(scan);
   return MakePointScan(scan, options_.min_range, usable_range_, options_.normals);
 }
