@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
@@ -10,7 +9,6 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
 #include <limits>
@@ -19,9 +17,9 @@
 #include <vector>
 
 #include "backend/base/error.h"
-#include "backend/base/gzip.h"
 #include "frontend/log/rawlog/rawlog_format.h"
 #include "tests/frontend/log/log_testing.h"
+#include "tests/frontend/log/rawlog/rawlog_testing.h"
 #include "tests/support/recordings.h"
 
 namespace loopgrid {
@@ -32,8 +30,11 @@ using mrpt::obs::CObservation2DRangeScan;
 using mrpt::poses::CPose2D;
 using mrpt::poses::CPose3D;
 using test_support::MemoryFile;
+using test_support::RawlogBytes;
 using test_support::ReadWholeLog;
 using test_support::ReadWholeLogFrom;
+using test_support::Scan;
+using test_support::SmallRawlog;
 using test_support::WholeLog;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -43,46 +44,6 @@ using ::testing::ThrowsMessage;
 
 constexpr double kRawlogPi = std::numbers::pi;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-// Collects the bytes of a rawlog.
-class RawlogBytes {
- public:
-  RawlogBytes& Add(const mrpt::serialization::CSerializable& object) {
-    mrpt::io::CMemoryStream stream;
-    auto archive = mrpt::serialization::archiveFrom(stream);
-    archive.WriteObject(object);
-    bytes_.append(static_cast<const char*>(stream.getRawBufferData()),
-                  static_cast<std::size_t>(stream.getTotalBytesCount()));
-    return *this;
-  }
-  RawlogBytes& AddMovement(const CPose2D& step) {
-    CActionRobotMovement2D movement;
-    movement.estimationMethod = CActionRobotMovement2D::emOdometry;
-    movement.rawOdometryIncrementReading = step;
-    mrpt::obs::CActionCollection actions;
-    actions.insert(movement);
-    return Add(actions);
-  }
-  RawlogBytes& AddFrame(const std::vector<CObservation2DRangeScan>& scans) {
-    mrpt::obs::CSensoryFrame frame;
-    for (const auto& scan : scans) frame.insert(std::make_shared<CObservation2DRangeScan>(scan));
-    return Add(frame);
-  }
-  const std::string& str() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-CObservation2DRangeScan Scan(const std::vector<float>& ranges, double time = 1.0) {
-  CObservation2DRangeScan scan;
-  scan.aperture = 2.0F;
-  scan.maxRange = 30.0F;
-  scan.timestamp = mrpt::Clock::fromDouble(time);
-  scan.resizeScanAndAssign(ranges.size(), 0.0F, true);
-  for (std::size_t i = 0; i < ranges.size(); ++i) scan.setScanRange(i, ranges[i]);
-  return scan;
-}
 
 WholeLog ReadAll(const RawlogBytes& bytes) { return ReadWholeLogFrom(bytes.str()); }
 
@@ -299,108 +260,6 @@ TEST(RawlogReader, AScanWithoutTimeTakesThatOfTheOneBefore) {
   RawlogBytes bytes;
   bytes.Add(Scan({1.0F, 2.0F}, 5.0)).Add(scan);
   EXPECT_EQ(ReadAll(bytes).observations.at(1).timestamp, 5.0);
-}
-
-RawlogBytes SmallRawlog() {
-  RawlogBytes bytes;
-  for (int i = 0; i < 3; ++i) {
-    bytes.AddMovement(CPose2D(0.5, 0.0, 0.1)).AddFrame({Scan({1.0F, 2.0F, 3.0F}, 5.0 + i)});
-  }
-  return bytes;
-}
-
-TEST(RawlogReader, ARawlogCutAnywhereGivesTheScansBeforeTheCutAndCountsIt) {
-  const std::string whole = SmallRawlog().str();
-  std::vector<std::size_t> object_ends;
-  RawlogBytes growing;
-  for (int i = 0; i < 3; ++i) {
-    growing.AddMovement(CPose2D(0.5, 0.0, 0.1));
-    object_ends.push_back(growing.str().size());
-    growing.AddFrame({Scan({1.0F, 2.0F, 3.0F}, 5.0 + i)});
-    object_ends.push_back(growing.str().size());
-  }
-  ASSERT_EQ(growing.str(), whole);
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  for (std::size_t size = object_ends[0]; size <= whole.size(); ++size) {
-    SCOPED_TRACE(size);
-    const auto complete = static_cast<std::size_t>(
-        std::upper_bound(object_ends.begin(), object_ends.end(), size) - object_ends.begin());
-    const bool clean = object_ends[complete - 1] == size;
-    const MemoryFile file(whole.substr(0, size));
-    const WholeLog log = ReadWholeLog(file.path());
-    EXPECT_EQ(log.observations.size(), complete / 2);
-    EXPECT_EQ(log.statistics.malformed, clean ? 0 : 1);
-    if (!clean) {
-      EXPECT_THAT(log.statistics.first_problems,
-                  ElementsAre(file.path() + ": ends in the middle of an object"));
-    }
-  }
-  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-}
-
-TEST(RawlogReader, ARawlogCutInItsFirstObjectIsRefused) {
-  const std::string whole = SmallRawlog().str();
-  const MemoryFile file(whole.substr(0, 40));
-  EXPECT_THAT([&] { ReadWholeLog(file.path()); },
-              ThrowsMessage<Error>(file.path() + ": ends in the middle of an object"));
-}
-
-TEST(RawlogReader, SurvivesAnyByteBeingWrong) {
-  const std::string whole = SmallRawlog().str();
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  for (std::size_t i = 0; i < 2 * whole.size(); ++i) {
-    SCOPED_TRACE(i);
-    std::string damaged = whole;
-    char& byte = damaged[i / 2];
-    byte = static_cast<char>(byte ^ (i % 2 == 0 ? 1 : 4));
-    try {
-      const WholeLog log = ReadWholeLogFrom(damaged);
-      for (const Observation& observation : log.observations) {
-        EXPECT_TRUE(observation.T_odom_robot.coordinates().allFinite());
-        for (const float range : observation.scan.ranges) EXPECT_TRUE(range >= 0.0F);
-      }
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::kInput);
-    }
-  }
-  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-}
-
-TEST(RawlogReader, CutGzipDataGiveWhatComesBefore) {
-  RawlogBytes bytes;
-  for (int i = 0; i < 300; ++i) {
-    bytes.AddMovement(CPose2D(0.01 * i, 0.0, 0.1))
-        .AddFrame({Scan(std::vector<float>(100, 0.1F * static_cast<float>(i)), i)});
-  }
-  const std::string packed = Gzip(bytes.str());
-  EXPECT_THAT(ReadWholeLogFrom(packed).observations, SizeIs(300));
-  const MemoryFile file(packed.substr(0, packed.size() / 2));
-  const WholeLog log = ReadWholeLog(file.path());
-  EXPECT_GT(log.observations.size(), 50U);
-  EXPECT_THAT(log.statistics.first_problems,
-              ElementsAre(file.path() + ": the gzip data are cut short"));
-}
-
-TEST(RawlogReader, EndsAtAnObjectOfAnUnknownClass) {
-  const std::string unknown =
-      "\x8d"
-      "CUnknownThing"
-      "\x01\x88";
-  const MemoryFile file(SmallRawlog().str() + unknown + SmallRawlog().str());
-  const WholeLog log = ReadWholeLog(file.path());
-  EXPECT_THAT(log.observations, SizeIs(3));
-  EXPECT_EQ(log.statistics.malformed, 1);
-  EXPECT_THAT(log.statistics.first_problems.at(0),
-              HasSubstr(": an object of the class CUnknownThing, which is not known"));
-  const MemoryFile first(unknown);
-  LogReaderOptions quiet;
-  quiet.max_reported_problems = 0;
-  EXPECT_THAT([&] { ReadWholeLog(first.path(), quiet); },
-              ThrowsMessage<Error>(HasSubstr("the class CUnknownThing")));
 }
 
 TEST(RawlogReader, IsChosenByTheFirstBytesThatMrptWrites) {
