@@ -6,7 +6,7 @@ namespace loopgrid::test_support {
 /// under a sanitizer. A sanitizer is about ten times slower and finds a defect in the first few
 /// rounds.
 template <typename T>
-constexpr T Effort(T full, [[maybe_unused]] T sanitized) {
+constexpr T Effort([[maybe_unused]] T full, [[maybe_unused]] T sanitized) {
 #ifdef LOOPGRID_SANITIZED
   return sanitized;
 #else
