@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, then builds and runs the tests of each preset named (by default of ci and tsan):
+# Installs what is missing, then builds and runs the tests of each preset named (by default of all):
 #   ci    release by g++, warnings are errors: every test, on whole recordings too
 #   asan  AddressSanitizer and UndefinedBehaviorSanitizer by clang++, warnings are errors: every
 #         test but those on whole recordings and in a browser
@@ -10,7 +10,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 presets=("$@")
-[[ ${#presets[@]} -gt 0 ]] || presets=(ci tsan)
+[[ ${#presets[@]} -gt 0 ]] || presets=(ci asan tsan)
 
 step() { printf '\n== %s (%d min %02d s)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
