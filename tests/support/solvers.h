@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "backend/graph/pose_graph.h"
+#include "backend/solve/optimizer.h"
 #include "backend/solve/optimizer_options.h"
 #include "tests/support/poses.h"
 
@@ -29,5 +31,18 @@ using AllSolvers =
     ::testing::Types<Solver<SE2, Method::kLevenbergMarquardt>, Solver<SE2, Method::kGaussNewton>,
                      Solver<SE2, Method::kDogLeg>, Solver<SE3, Method::kLevenbergMarquardt>,
                      Solver<SE3, Method::kGaussNewton>, Solver<SE3, Method::kDogLeg>>;
+
+/// A test that is typed by AllSolvers.
+template <typename S>
+class SolverTest : public ::testing::Test {
+ protected:
+  SolverTest() { options_.method = S::kMethod; }
+
+  OptimizerResult Optimize(PoseGraph<typename S::Pose>* graph) const {
+    return Optimizer<typename S::Pose>(options_).Optimize(graph);
+  }
+
+  OptimizerOptions options_;
+};
 
 }  // namespace loopgrid::test_support

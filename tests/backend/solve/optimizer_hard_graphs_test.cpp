@@ -30,16 +30,7 @@ PoseGraph<Pose> NonsenseStart(unsigned seed) {
 }
 
 template <typename S>
-class HardGraphTest : public ::testing::Test {
- protected:
-  HardGraphTest() { options_.method = S::kMethod; }
-
-  OptimizerResult Optimize(PoseGraph<typename S::Pose>* graph) const {
-    return Optimizer<typename S::Pose>(options_).Optimize(graph);
-  }
-
-  OptimizerOptions options_;
-};
+class HardGraphTest : public test_support::SolverTest<S> {};
 
 TYPED_TEST_SUITE(HardGraphTest, test_support::AllSolvers, test_support::SolverName);
 

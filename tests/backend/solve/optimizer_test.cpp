@@ -60,16 +60,7 @@ void OptimizeDense(PoseGraph<Pose>* graph) {
 }
 
 template <typename S>
-class OptimizerTest : public ::testing::Test {
- protected:
-  OptimizerTest() { options_.method = S::kMethod; }
-
-  OptimizerResult Optimize(PoseGraph<typename S::Pose>* graph) const {
-    return Optimizer<typename S::Pose>(options_).Optimize(graph);
-  }
-
-  OptimizerOptions options_;
-};
+class OptimizerTest : public test_support::SolverTest<S> {};
 
 TYPED_TEST_SUITE(OptimizerTest, test_support::AllSolvers, test_support::SolverName);
 
